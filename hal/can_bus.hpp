@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+
+#include "hal/frame.hpp"
+#include "hal/result.hpp"
+
+namespace hitchview::hal {
+
+/// One frame of a classic or FD bus.
+struct CanFrame {
+    std::uint32_t id = 0;  ///< 11 or 29 bits, without flags
+    bool extended = false;
+    std::uint8_t size_bytes = 0;  ///< 0..8 classic, 0..64 FD
+    std::array<std::uint8_t, 64> data{};
+    Instant received_at{};
+};
+
+/// Frames received from one CAN bus. Thread: the one that calls WaitFrame.
+class CanBus {
+ public:
+    virtual ~CanBus() = default;
+
+    /// Blocks until a frame comes, at most `timeout` (> 0).
+    /// kTimeout: the bus is silent; ordinary. kEndOfStream: the recording is over.
+    /// kDisconnected: the interface is down or the controller is bus-off.
+    Result<CanFrame> WaitFrame(std::chrono::milliseconds timeout) {
+        HV_EXPECT(timeout.count() > 0);
+        return DoWaitFrame(timeout);
+    }
+
+ private:
+    virtual Result<CanFrame> DoWaitFrame(std::chrono::milliseconds timeout) = 0;
+};
+
+}  // namespace hitchview::hal

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+namespace hitchview::hal {
+
+/// Bounded queue from one thread to another, in order. What does not fit is refused and counted.
+/// Writer thread: Append. Reader thread: Take. Any thread: refused.
+template <typename T, std::size_t kCapacity>
+class Ring {
+    static_assert((kCapacity & (kCapacity - 1)) == 0, "capacity is a power of two");
+
+ public:
+    /// False if the ring is full; `item` is then left alone.
+    bool Append(T&& item) {
+        const std::size_t end = end_.load(std::memory_order_relaxed);
+        if (end - begin_.load(std::memory_order_acquire) == kCapacity) {
+            refused_.fetch_add(1, std::memory_order_relaxed);
+            return false;
+        }
+        items_[end % kCapacity] = std::move(item);
+        end_.store(end + 1, std::memory_order_release);
+        return true;
+    }
+    bool Append(const T& item) { return Append(T(item)); }
+
+    /// Empty when there is nothing.
+    std::optional<T> Take() {
+        const std::size_t begin = begin_.load(std::memory_order_relaxed);
+        if (begin == end_.load(std::memory_order_acquire)) return std::nullopt;
+        std::optional<T> item(std::move(items_[begin % kCapacity]));
+        begin_.store(begin + 1, std::memory_order_release);
+        return item;
+    }
+
+    [[nodiscard]] std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
+
+ private:
+    std::array<T, kCapacity> items_{};
+    alignas(64) std::atomic<std::size_t> begin_{0};
+    alignas(64) std::atomic<std::size_t> end_{0};
+    std::atomic<std::uint64_t> refused_{0};
+};
+
+}  // namespace hitchview::hal
