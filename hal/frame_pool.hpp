@@ -64,13 +64,11 @@ class FramePool final : public FrameOwner {
     /// At most 64 slots.
     FramePool(const FrameFormat& format, int slots)
         : format_(format),
-          slots_(slots),
+          slots_(WithinMask(slots)),
           frame_bytes_((FrameBytes(format) + kAlignment - 1) / kAlignment * kAlignment),
           memory_(frame_bytes_ * static_cast<std::size_t>(slots) + kAlignment),
           free_(slots == 64 ? ~0ULL : (1ULL << slots) - 1),
-          low_water_(slots) {
-        HV_EXPECT(slots > 0 && slots <= 64);
-    }
+          low_water_(slots) {}
 
     /// Memory of one frame, to be written by the taker before Lease.
     struct Slot {
@@ -108,6 +106,12 @@ class FramePool final : public FrameOwner {
 
  private:
     static constexpr std::size_t kAlignment = 64;
+
+    // Checked before the first member is sized by it.
+    static int WithinMask(int slots) {
+        HV_EXPECT(slots > 0 && slots <= 64);
+        return slots;
+    }
 
     void DoReturn(int slot) override {
         HV_EXPECT(slot >= 0 && slot < slots_);

@@ -32,8 +32,8 @@ struct PanoramaImage {
     int width_px = 0;
     int height_px = 0;
     std::uint32_t cameras_missing = 0;   ///< bit i: camera i of the rig shows no data
-    std::string_view calibration_id;     ///< empty for a rig without calibration
-    std::span<const std::uint8_t> jpeg;
+    std::string_view calibration_id{};   ///< empty for a rig without calibration
+    std::span<const std::uint8_t> jpeg{};
 };
 
 /// What the pipeline knows about the frame it has just made.

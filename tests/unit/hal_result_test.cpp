@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "hal/result.hpp"
+
+namespace hitchview::hal {
+namespace {
+
+TEST(ResultTest, HoldsAValueOrAnError) {
+    const Result<int> value(7);
+    const Result<int> error(Error::kTimeout);
+    EXPECT_TRUE(value.ok());
+    EXPECT_EQ(value.value(), 7);
+    EXPECT_FALSE(error.ok());
+    EXPECT_EQ(error.error(), Error::kTimeout);
+}
+
+TEST(ResultTest, CarriesWhatCanOnlyBeMoved) {
+    Result<std::unique_ptr<int>> result(std::make_unique<int>(3));
+    const std::unique_ptr<int> taken = std::move(*result);
+    EXPECT_EQ(*taken, 3);
+}
+
+TEST(ResultTest, CheckedSaysWhyInWords) {
+    const Checked<Done> refused(std::string("rig.yaml:3: unknown key"));
+    EXPECT_EQ(refused.error(), "rig.yaml:3: unknown key");
+}
+
+TEST(ResultDeathTest, ReadingTheWrongSideStopsTheProcess) {
+    const Result<int> value(7);
+    const Result<int> error(Error::kFailed);
+    EXPECT_DEATH((void)error.value(), "expectation failed");
+    EXPECT_DEATH((void)value.error(), "expectation failed");
+}
+
+TEST(ResultTest, EveryErrorHasItsOwnName) {
+    const Error all[] = {Error::kTimeout,   Error::kEndOfStream, Error::kDisconnected,
+                         Error::kCorrupted, Error::kUnsupported, Error::kNotFound,
+                         Error::kTooLarge,  Error::kFailed};
+    for (const Error a : all) {
+        EXPECT_STRNE(ToString(a), "unknown");
+        for (const Error b : all) {
+            EXPECT_EQ(a == b, std::string(ToString(a)) == ToString(b));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace hitchview::hal
