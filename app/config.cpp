@@ -1,0 +1,184 @@
+#include "app/config.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "app/config_sections.hpp"
+#include "calib/yaml_map.hpp"
+
+namespace hitchview::app {
+namespace {
+
+using calib::Choice;
+using calib::Range;
+using calib::YamlMap;
+using calib::YamlValue;
+using Projection = CanvasConfig::Projection;
+
+constexpr std::array kProjections{Choice<Projection>{"plane", Projection::kPlane},
+                                  Choice<Projection>{"cylinder", Projection::kCylinder}};
+CanvasConfig ReadCanvas(const YamlValue& value) {
+    constexpr Range<int> kWidth{64, 8192, true};
+    constexpr Range<int> kHeight{64, 4096, true};
+    CanvasConfig canvas;
+    YamlMap map = value.Map();
+    map["projection"].Read(kProjections, canvas.projection);
+    const YamlValue horizon = map["horizon"];
+    const YamlValue radius = map["radius_m"];
+    if (canvas.projection == Projection::kPlane) {
+        ReadSize(map.Required("size_px"), kWidth, kHeight, canvas.size_px);
+        horizon.Refuse("absent with projection plane");
+        radius.Refuse("absent with projection plane");
+    } else {
+        canvas.size_px = {2048, 360};
+        ReadSize(map["size_px"], kWidth, kHeight, canvas.size_px);
+        horizon.Read({0, 1}, canvas.horizon);
+        radius.Read({1, 1000}, canvas.radius_m);
+    }
+    map.Finish();
+    return canvas;
+}
+
+CameraConfig ReadCamera(const YamlValue& value, ConfigContext& context) {
+    CameraConfig camera;
+    YamlMap map = value.Map();
+    const YamlValue name = map.Required("name");
+    name.Read(camera.name);
+    if (!camera.name.empty() && !calib::IsName(camera.name)) {
+        name.Refuse("letters, digits and _ only");
+    } else if (!camera.name.empty() && !context.camera_names.insert(camera.name).second) {
+        name.Refuse("unique in the rig");
+    }
+    if (!ReadSource(map.Required("source"), "replay", context, camera.replay)) {
+        camera.source = CameraConfig::Source::kSimulated;
+        context.simulates_cameras = true;
+    }
+    map.Finish();
+    return camera;
+}
+
+UnitConfig ReadUnit(const YamlValue& value, Projection projection, ConfigContext& context) {
+    UnitConfig unit;
+    YamlMap map = value.Map();
+    const YamlValue cameras = value.given() ? map.Required("cameras") : map["cameras"];
+    for (const YamlValue& camera : cameras.List({1, kMaxCameras})) {
+        unit.cameras.push_back(ReadCamera(camera, context));
+    }
+    if (projection == Projection::kPlane && unit.cameras.size() > 1) {
+        cameras.Refuse("a list of 1 with projection plane");
+    }
+    map.Finish();
+    return unit;
+}
+
+algo::PerUnit<UnitConfig> ReadUnits(const YamlValue& value, Projection projection,
+                                    ConfigContext& context) {
+    algo::PerUnit<UnitConfig> units;
+    YamlMap map = value.Map();
+    const YamlValue tractor = map.Required("tractor");
+    const YamlValue trailer = map["trailer"];
+    units[algo::Unit::kTractor] = ReadUnit(tractor, projection, context);
+    units[algo::Unit::kTrailer] = ReadUnit(trailer, projection, context);
+    if (context.camera_names.size() > kMaxCameras) {
+        value.Refuse("units with at most 8 cameras in total");
+    }
+    map.Finish();
+    return units;
+}
+
+std::optional<Placement> ReadPlacement(const YamlValue& value, const RigConfig& config) {
+    if (!value.given()) return std::nullopt;
+    if (config.canvas.projection != Projection::kPlane) {
+        value.Refuse("absent with projection cylinder");
+    }
+    Placement placement;
+    YamlMap map = value.Map();
+    for (const algo::Unit unit : algo::kUnits) {
+        const char* key = algo::ToString(unit);
+        std::array<int, 2> corner{};
+        (config.HasUnit(unit) ? map.Required(key) : map[key]).Read(Range<int>{-8192, 8192}, corner);
+        placement[unit] = {corner[0], corner[1]};
+    }
+    map.Finish();
+    return placement;
+}
+
+void ReadCalibrationPath(YamlMap& root, const ConfigContext& context, RigConfig& config) {
+    if (config.canvas.projection == Projection::kPlane) {
+        root["calibration"].Refuse("absent with canvas.projection plane");
+    } else {
+        ReadPath(root.Required("calibration"), context, config.calibration);
+    }
+}
+
+int ReadWorkers(const YamlValue& value) {
+    int workers = RigConfig{}.workers;
+    YamlMap map = value.Map();
+    map["workers"].Read(Range<int>{1, kMaxWorkers}, workers);
+    map.Finish();
+    return workers;
+}
+
+std::optional<std::chrono::nanoseconds> ReadPeriod(const YamlValue& value) {
+    if (!value.given()) return std::nullopt;
+    double period_ms = 0;
+    value.Read({1, 1000}, period_ms);
+    return std::chrono::nanoseconds(std::llround(period_ms * 1e6));
+}
+
+RigConfig ReadRig(YamlMap& root, ConfigContext& context) {
+    RigConfig config;
+    int schema = 1;
+    root.Required("schema").Read(Range<int>{1, 1}, schema);
+    config.canvas = ReadCanvas(root["canvas"]);
+    ReadCalibrationPath(root, context, config);
+    config.units = ReadUnits(root.Required("units"), config.canvas.projection, context);
+    config.simulation = ReadSimulation(root["simulation"], context);
+    config.stabilization = ReadStabilization(root["stabilization"]);
+    config.stitching = ReadStitching(root["stitching"]);
+    config.placement = ReadPlacement(root["placement"], config);
+    config.workers = ReadWorkers(root["threads"]);
+    config.period = ReadPeriod(root["period_ms"]);
+    config.can = ReadCan(root["can"], context);
+    config.publish = ReadPublish(root["publish"]);
+    root.Finish();
+    return config;
+}
+
+/// Empty when the calibration has `camera` on `unit`.
+std::string CalibrationProblem(const calib::RigCalibration& calibration, const std::string& camera,
+                               algo::Unit unit) {
+    const auto found = calibration.cameras.find(camera);
+    if (found == calibration.cameras.end()) {
+        return "cameras." + camera + " is missing, must be there for this rig";
+    }
+    if (found->second.unit == unit) return "";
+    return "cameras." + camera + ".unit is " + algo::ToString(found->second.unit) + ", must be " +
+           algo::ToString(unit) + " for this rig";
+}
+
+}  // namespace
+
+hal::Checked<RigConfig> LoadRigConfig(const std::filesystem::path& file) {
+    calib::YamlComplaints complaints(file.string());
+    YamlMap root = calib::LoadYaml(file, complaints);
+    ConfigContext context{.folder = file.parent_path()};
+    RigConfig config = ReadRig(root, context);
+    if (!complaints.empty()) return complaints.Text();
+    config.file = file;
+    return config;
+}
+
+hal::Checked<calib::RigCalibration> LoadCalibrationFor(const RigConfig& config) {
+    calib::LoadedCalibration loaded = calib::LoadCalibration(config.calibration);
+    if (!loaded.calibration) return std::move(loaded.error);
+    for (const algo::Unit unit : algo::kUnits) {
+        for (const CameraConfig& camera : config.units[unit].cameras) {
+            const std::string problem = CalibrationProblem(*loaded.calibration, camera.name, unit);
+            if (!problem.empty()) return config.calibration.string() + ": " + problem;
+        }
+    }
+    return std::move(*loaded.calibration);
+}
+
+}  // namespace hitchview::app

@@ -1,0 +1,148 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algo/unit.hpp"
+#include "calib/rig_calibration.hpp"
+#include "hal/result.hpp"
+
+/// What rig.yaml says. docs/rig.example.yaml shows every key; ranges stand in square brackets.
+namespace hitchview::app {
+
+inline constexpr int kMaxCameras = 8;
+inline constexpr int kMaxLookaheadFrames = 10;
+inline constexpr int kMaxWorkers = 16;
+
+struct Size {
+    int width_px = 0;
+    int height_px = 0;
+};
+
+struct CanvasConfig {
+    enum class Projection {
+        kPlane,     ///< one camera per unit, no calibration
+        kCylinder,  ///< 360 degrees around the tractor
+    };
+
+    Projection projection = Projection::kPlane;
+    Size size_px{};          ///< even, [64, 8192] x [64, 4096]; cylinder: 2048 x 360 unless given
+    double horizon = 0.45;   ///< cylinder: share of the height above the horizon. [0, 1]
+    double radius_m = 20.0;  ///< cylinder: distance at which the calibration aligns. [1, 1000]
+};
+
+struct CameraConfig {
+    enum class Source { kReplay, kSimulated };
+
+    std::string name{};  ///< letters, digits and _; unique in the rig
+    Source source = Source::kReplay;
+    std::filesystem::path replay{};  ///< video file, image sequence or LCM log; kReplay only
+};
+
+struct UnitConfig {
+    std::vector<CameraConfig> cameras{};  ///< [1, 8]; empty: the rig has no such unit
+};
+
+/// The drive that simulated cameras see.
+struct SimulationConfig {
+    enum class Profile { kStraight, kSlalom, kTurnLeft, kTurnRight };
+
+    std::uint32_t seed = 1;
+    int frames = 300;  ///< [1, 36000]
+    Profile profile = Profile::kSlalom;
+    Size camera_size_px{1280, 720};             ///< even, [64, 4096]; landscape
+    double speed_mps = 8.0;                     ///< [0, 30]
+    algo::PerUnit<double> shake{{{1.0, 1.0}}};  ///< share of the usual vibration. [0, 5]
+    double noise = 1.0;                         ///< standard deviation, grey levels. [0, 50]
+};
+
+struct StabilizationConfig {
+    enum class Border {
+        kFree,     ///< uncovered pixels show 'no data'
+        kCovered,  ///< zoomed by 1 / cropping, never uncovered
+    };
+    enum class Smoother { kSecondDifference, kPaperWeights };
+
+    bool enabled = true;
+    int lookahead_frames = 0;  ///< frames seen before one is shown; each costs a period. [0, 10]
+    Border border = Border::kFree;
+    double cropping = 0.90;  ///< share of width and height that stays in view. [0.5, 1]
+    Smoother smoother = Smoother::kSecondDifference;
+};
+
+struct StitchingConfig {
+    bool enabled = true;
+    double kappa = 0.5;  ///< who gives way: 0 the trailer alone, 1 the tractor alone. [0, 1]
+};
+
+/// Top-left corner of a unit's view on a plane canvas.
+struct Corner {
+    int x_px = 0;  ///< [-8192, 8192]
+    int y_px = 0;
+};
+using Placement = algo::PerUnit<Corner>;
+
+/// Where the yaw of the trailer stands in a CAN frame: angle = factor * raw + offset.
+struct HitchAngleSignal {
+    enum class ByteOrder { kMotorola, kIntel };
+
+    std::uint32_t id = 0;  ///< [0, 0x1fffffff]; above 0x7ff: extended
+    int start_bit = 0;     ///< as in DBC files. [0, 511]
+    int length_bits = 16;  ///< [1, 32]
+    ByteOrder byte_order = ByteOrder::kIntel;
+    bool is_signed = false;
+    double factor_deg = 1.0;  ///< not 0. [-1000, 1000]
+    double offset_deg = 0.0;  ///< [-100000, 100000]
+    double min_deg = -120.0;  ///< below: implausible. [-360, 360]
+    double max_deg = 120.0;   ///< above: implausible. [min_deg, 360]
+};
+
+struct CanConfig {
+    enum class Source { kSimulated, kCandump };
+
+    Source source = Source::kSimulated;
+    std::filesystem::path candump{};  ///< text log as `candump -L` writes it; kCandump only
+    HitchAngleSignal hitch_angle{};
+};
+
+struct PublishConfig {
+    std::string url = "udpm://239.255.76.67:7667?ttl=1";
+    std::string panorama_channel = "PANORAMA";  ///< LCM channel, at most 63 characters
+    std::string status_channel = "PANORAMA_STATUS";
+    std::string hitch_angle_channel = "HITCH_ANGLE";
+    int jpeg_quality = 85;   ///< [30, 95]
+    int max_bytes = 150000;  ///< of one compressed panorama. [20000, 4000000]
+};
+
+struct RigConfig {
+    std::filesystem::path file{};  ///< where it was read from
+    CanvasConfig canvas{};
+    std::filesystem::path calibration{};  ///< empty for a plane
+    algo::PerUnit<UnitConfig> units{};
+    SimulationConfig simulation{};
+    StabilizationConfig stabilization{};
+    StitchingConfig stitching{};
+    std::optional<Placement> placement{};  ///< plane only; otherwise found by matching
+    int workers = 2;                       ///< threads beside the pipeline's own. [1, 16]
+    std::optional<std::chrono::nanoseconds> period{};  ///< [1, 1000] ms; otherwise the recording's
+    std::optional<CanConfig> can{};
+    PublishConfig publish{};
+
+    [[nodiscard]] bool HasUnit(algo::Unit unit) const { return !units[unit].cameras.empty(); }
+};
+
+/// Reads and checks a rig file. Relative paths in the result stand relative to the file's folder.
+/// The error has one line `file:line: key.path is VALUE, must be ...` for each mistake.
+/// Whether the files it names exist is not looked at. Throws nothing.
+hal::Checked<RigConfig> LoadRigConfig(const std::filesystem::path& file);
+
+/// Reads the calibration of a cylinder rig and checks that it has every camera of the rig, on the
+/// same unit. It may have more cameras than the rig.
+hal::Checked<calib::RigCalibration> LoadCalibrationFor(const RigConfig& config);
+
+}  // namespace hitchview::app

@@ -1,0 +1,166 @@
+#include "app/config_sections.hpp"
+
+#include <array>
+
+namespace hitchview::app {
+namespace {
+
+using calib::Choice;
+using calib::Range;
+using calib::YamlMap;
+using calib::YamlValue;
+
+constexpr std::size_t kMaxChannelLength = 63;  // LCM's own limit
+
+constexpr std::array kProfiles{
+    Choice<SimulationConfig::Profile>{"straight", SimulationConfig::Profile::kStraight},
+    Choice<SimulationConfig::Profile>{"slalom", SimulationConfig::Profile::kSlalom},
+    Choice<SimulationConfig::Profile>{"turn_left", SimulationConfig::Profile::kTurnLeft},
+    Choice<SimulationConfig::Profile>{"turn_right", SimulationConfig::Profile::kTurnRight}};
+constexpr std::array kBorders{
+    Choice<StabilizationConfig::Border>{"free", StabilizationConfig::Border::kFree},
+    Choice<StabilizationConfig::Border>{"covered", StabilizationConfig::Border::kCovered}};
+constexpr std::array kSmoothers{
+    Choice<StabilizationConfig::Smoother>{"second_difference",
+                                          StabilizationConfig::Smoother::kSecondDifference},
+    Choice<StabilizationConfig::Smoother>{"paper_weights",
+                                          StabilizationConfig::Smoother::kPaperWeights}};
+constexpr std::array kByteOrders{
+    Choice<HitchAngleSignal::ByteOrder>{"motorola", HitchAngleSignal::ByteOrder::kMotorola},
+    Choice<HitchAngleSignal::ByteOrder>{"intel", HitchAngleSignal::ByteOrder::kIntel}};
+
+HitchAngleSignal ReadHitchAngle(const YamlValue& value) {
+    HitchAngleSignal signal;
+    YamlMap map = value.Map();
+    map.Required("id").Read(Range<std::uint32_t>{0, 0x1FFFFFFF}, signal.id);
+    map.Required("start_bit").Read(Range<int>{0, 511}, signal.start_bit);
+    map.Required("length_bits").Read(Range<int>{1, 32}, signal.length_bits);
+    map["byte_order"].Read(kByteOrders, signal.byte_order);
+    map["signed"].Read(signal.is_signed);
+    const YamlValue factor = map.Required("factor_deg");
+    factor.Read({-1000, 1000}, signal.factor_deg);
+    if (signal.factor_deg == 0) factor.Refuse("other than 0");
+    map["offset_deg"].Read({-100000, 100000}, signal.offset_deg);
+    map["min_deg"].Read({-360, 360}, signal.min_deg);
+    const YamlValue max_deg = map["max_deg"];
+    max_deg.Read({-360, 360}, signal.max_deg);
+    if (signal.max_deg <= signal.min_deg) max_deg.Refuse("greater than min_deg");
+    map.Finish();
+    return signal;
+}
+
+void ReadChannel(const YamlValue& value, std::set<std::string>& channels, std::string& out) {
+    value.Read(out);
+    if (!calib::IsName(out) || out.size() > kMaxChannelLength) {
+        value.Refuse("an LCM channel: letters, digits and _, at most 63 characters");
+    } else if (!channels.insert(out).second) {
+        value.Refuse("a channel of its own");
+    }
+}
+
+}  // namespace
+
+void ReadPath(const YamlValue& value, const ConfigContext& context, std::filesystem::path& out) {
+    std::string text;
+    value.Read(text);
+    if (!text.empty()) out = (context.folder / text).lexically_normal();
+}
+
+void ReadSize(const YamlValue& value, const Range<int>& width, const Range<int>& height,
+              Size& out) {
+    const auto items = value.List({2, 2});
+    if (items.empty()) return;
+    items[0].Read(width, out.width_px);
+    items[1].Read(height, out.height_px);
+}
+
+bool ReadSource(const YamlValue& value, const std::string& file_key, const ConfigContext& context,
+                std::filesystem::path& path) {
+    YamlMap map = value.Map();
+    const YamlValue simulated = map["simulated"];
+    const YamlValue file = map[file_key];
+    map.Finish();
+    if (simulated.given() == file.given()) {
+        value.Refuse("a map with either simulated or " + file_key);
+    }
+    bool is_simulated = true;
+    simulated.Read(is_simulated);
+    if (!is_simulated) simulated.Refuse("true");
+    ReadPath(file, context, path);
+    return file.given();
+}
+
+SimulationConfig ReadSimulation(const YamlValue& value, const ConfigContext& context) {
+    SimulationConfig simulation;
+    if (value.given() && !context.simulates_cameras) {
+        value.Refuse("absent unless a camera has the source {simulated: true}");
+    }
+    YamlMap map = value.Map();
+    map["seed"].Read(Range<std::uint32_t>{0, UINT32_MAX}, simulation.seed);
+    map["frames"].Read(Range<int>{1, 36000}, simulation.frames);
+    map["profile"].Read(kProfiles, simulation.profile);
+    const YamlValue size = map["camera_size_px"];
+    ReadSize(size, {64, 4096, true}, {64, 4096, true}, simulation.camera_size_px);
+    if (simulation.camera_size_px.height_px > simulation.camera_size_px.width_px) {
+        size.Refuse("at least as wide as high");
+    }
+    map["speed_mps"].Read({0, 30}, simulation.speed_mps);
+    YamlMap shake = map["shake"].Map();
+    for (const algo::Unit unit : algo::kUnits) {
+        shake[algo::ToString(unit)].Read({0, 5}, simulation.shake[unit]);
+    }
+    shake.Finish();
+    map["noise"].Read({0, 50}, simulation.noise);
+    map.Finish();
+    return simulation;
+}
+
+StabilizationConfig ReadStabilization(const YamlValue& value) {
+    StabilizationConfig stabilization;
+    YamlMap map = value.Map();
+    map["enabled"].Read(stabilization.enabled);
+    map["lookahead_frames"].Read(Range<int>{0, kMaxLookaheadFrames},
+                                 stabilization.lookahead_frames);
+    map["border"].Read(kBorders, stabilization.border);
+    map["cropping"].Read({0.5, 1}, stabilization.cropping);
+    map["smoother"].Read(kSmoothers, stabilization.smoother);
+    map.Finish();
+    return stabilization;
+}
+
+StitchingConfig ReadStitching(const YamlValue& value) {
+    StitchingConfig stitching;
+    YamlMap map = value.Map();
+    map["enabled"].Read(stitching.enabled);
+    map["kappa"].Read({0, 1}, stitching.kappa);
+    map.Finish();
+    return stitching;
+}
+
+std::optional<CanConfig> ReadCan(const YamlValue& value, const ConfigContext& context) {
+    if (!value.given()) return std::nullopt;
+    CanConfig can;
+    YamlMap map = value.Map();
+    if (ReadSource(map.Required("source"), "candump", context, can.candump)) {
+        can.source = CanConfig::Source::kCandump;
+    }
+    can.hitch_angle = ReadHitchAngle(map.Required("hitch_angle"));
+    map.Finish();
+    return can;
+}
+
+PublishConfig ReadPublish(const YamlValue& value) {
+    PublishConfig publish;
+    YamlMap map = value.Map();
+    map["url"].Read(publish.url);
+    std::set<std::string> channels;
+    ReadChannel(map["panorama_channel"], channels, publish.panorama_channel);
+    ReadChannel(map["status_channel"], channels, publish.status_channel);
+    ReadChannel(map["hitch_angle_channel"], channels, publish.hitch_angle_channel);
+    map["jpeg_quality"].Read(Range<int>{30, 95}, publish.jpeg_quality);
+    map["max_bytes"].Read(Range<int>{20000, 4000000}, publish.max_bytes);
+    map.Finish();
+    return publish;
+}
+
+}  // namespace hitchview::app

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "app/config.hpp"
+#include "calib/yaml_map.hpp"
+
+/// Readers of the sections of a rig file, for LoadRigConfig alone. Each reads what is given over
+/// the defaults and leaves its complaints with the file's.
+namespace hitchview::app {
+
+/// What the sections of one file share.
+struct ConfigContext {
+    std::filesystem::path folder{};
+    std::set<std::string> camera_names{};
+    bool simulates_cameras = false;
+};
+
+void ReadPath(const calib::YamlValue& value, const ConfigContext& context,
+              std::filesystem::path& out);
+void ReadSize(const calib::YamlValue& value, const calib::Range<int>& width,
+              const calib::Range<int>& height, Size& out);
+/// A source is a map with exactly one of two keys: the value `true` of `simulated`, or a path.
+/// Returns whether it is the path.
+bool ReadSource(const calib::YamlValue& value, const std::string& file_key,
+                const ConfigContext& context, std::filesystem::path& path);
+
+SimulationConfig ReadSimulation(const calib::YamlValue& value, const ConfigContext& context);
+StabilizationConfig ReadStabilization(const calib::YamlValue& value);
+StitchingConfig ReadStitching(const calib::YamlValue& value);
+std::optional<CanConfig> ReadCan(const calib::YamlValue& value, const ConfigContext& context);
+PublishConfig ReadPublish(const calib::YamlValue& value);
+
+}  // namespace hitchview::app

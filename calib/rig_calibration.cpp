@@ -1,0 +1,139 @@
+#include "calib/rig_calibration.hpp"
+
+#include <yaml-cpp/emitter.h>
+
+#include <fstream>
+#include <numbers>
+#include <string_view>
+
+#include "calib/sha256.hpp"
+#include "calib/yaml_map.hpp"
+
+namespace hitchview::calib {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr std::size_t kShownIdDigits = 12;
+
+std::string Quoted(const std::string& text) {
+    YAML::Emitter emitter;
+    emitter << YAML::DoubleQuoted << text;
+    return emitter.c_str();
+}
+
+std::string List(std::initializer_list<double> numbers) {
+    std::string text;
+    for (const double number : numbers) {
+        text.append(text.empty() ? "[" : ", ").append(ExactText(number));
+    }
+    return text + "]";
+}
+
+std::string Distortion(const algo::CameraModel& m) {
+    const auto& d = m.distortion;
+    return m.kind == algo::CameraModel::Kind::kPinholeRadtan ? List({d[0], d[1], d[2], d[3], d[4]})
+                                                             : List({d[0], d[1], d[2], d[3]});
+}
+
+std::string CameraText(const CalibratedCamera& camera) {
+    const algo::CameraModel& m = camera.model;
+    const Quaterniond& q = camera.q_unit_camera;
+    const Vector3d& p = camera.position_m;
+    const std::string indent = "\n    ";
+    return indent + "unit: " + algo::ToString(camera.unit) +                         //
+           indent + "model: " + std::string(algo::ToString(m.kind)) +                //
+           indent + "size_px: " + List({double(m.width_px), double(m.height_px)}) +  //
+           indent + "focal_px: " + List({m.fx_px, m.fy_px}) +                        //
+           indent + "centre_px: " + List({m.cx_px, m.cy_px}) +                       //
+           indent + "distortion: " + Distortion(m) +                                 //
+           indent + "max_theta_rad: " + ExactText(m.max_theta_rad) +                 //
+           indent + "rotation: {quaternion_wxyz: " + List({q.w(), q.x(), q.y(), q.z()}) + "}" +
+           indent + "position_m: " + List({p.x(), p.y(), p.z()}) + "\n";
+}
+
+/// What the id stands for.
+std::string Content(const RigCalibration& calibration) {
+    std::string text = "vehicle: " + Quoted(calibration.vehicle) + "\ncameras:\n";
+    for (const auto& [name, camera] : calibration.cameras) {
+        text += "  " + name + ":" + CameraText(camera);
+    }
+    return text;
+}
+
+std::string WriteText(const std::string& text, const std::filesystem::path& file) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    stream.close();
+    return stream ? "" : file.string() + ": the file cannot be written";
+}
+
+}  // namespace
+
+bool IsName(std::string_view name) {
+    constexpr std::string_view kAllowed =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
+    return !name.empty() && name.find_first_not_of(kAllowed) == name.npos;
+}
+
+std::string_view ToString(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::kPass:
+            return "pass";
+        case Verdict::kFail:
+            return "fail";
+        case Verdict::kUnchecked:
+            break;
+    }
+    return "unchecked";
+}
+
+algo::CameraGeometry CalibratedCamera::Geometry() const {
+    algo::CameraGeometry geometry{model, Eigen::Isometry3d::Identity()};
+    geometry.T_unit_camera.linear() = q_unit_camera.normalized().toRotationMatrix();
+    geometry.T_unit_camera.translation() = position_m;
+    return geometry;
+}
+
+CalibratedCamera CalibratedCamera::From(algo::Unit unit, const algo::CameraGeometry& geometry) {
+    return {unit, geometry.model, Quaterniond(geometry.T_unit_camera.linear()),
+            geometry.T_unit_camera.translation()};
+}
+
+Quaterniond RotationFromRpy(const Vector3d& rpy_deg) {
+    const Vector3d rpy_rad = rpy_deg * (std::numbers::pi / 180);
+    const Quaterniond q_unit_body = Eigen::AngleAxisd(rpy_rad.z(), Vector3d::UnitZ()) *
+                                    Eigen::AngleAxisd(rpy_rad.y(), Vector3d::UnitY()) *
+                                    Eigen::AngleAxisd(rpy_rad.x(), Vector3d::UnitX());
+    // The camera's x, y, z are the body's -y, -z, x.
+    const Quaterniond q_body_camera(0.5, -0.5, 0.5, -0.5);
+    return q_unit_body * q_body_camera;
+}
+
+std::string RigCalibration::id() const {
+    return Sha256(Content(*this)).substr(0, kShownIdDigits);
+}
+
+std::string ToYaml(const RigCalibration& calibration) {
+    return "schema: 1\nverdict: " + std::string(ToString(calibration.verdict)) +
+           "\nwritten_by: " + Quoted(calibration.written_by) + "\nid: \"" + calibration.id() +
+           "\"\n" + Content(calibration);
+}
+
+std::string SaveCalibration(const RigCalibration& calibration, const std::filesystem::path& file) {
+    std::filesystem::path fresh = file;
+    fresh += ".new";
+    std::string problem = WriteText(ToYaml(calibration), fresh);
+    // What could not be read back must not replace what can.
+    if (problem.empty()) problem = LoadCalibration(fresh).error;
+    std::error_code error;
+    if (problem.empty()) {
+        std::filesystem::rename(fresh, file, error);
+        if (error) problem = file.string() + ": the file cannot be replaced: " + error.message();
+    }
+    if (!problem.empty()) std::filesystem::remove(fresh, error);
+    return problem;
+}
+
+}  // namespace hitchview::calib

@@ -1,0 +1,29 @@
+#include <gtest/gtest.h>
+
+#include "calib/sha256.hpp"
+
+namespace hitchview::calib {
+namespace {
+
+// Vectors: FIPS 180-2 appendix B, and the NIST byte-oriented vectors for the empty message.
+TEST(Sha256Test, AgreesWithThePublishedVectors) {
+    EXPECT_EQ(Sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    EXPECT_EQ(Sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    EXPECT_EQ(Sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+              "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+    EXPECT_EQ(Sha256(std::string(1'000'000, 'a')),
+              "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(Sha256Test, EveryLengthAroundABlockEndHasItsOwnDigest) {
+    std::string last;
+    for (std::size_t length = 50; length < 70; ++length) {
+        const std::string digest = Sha256(std::string(length, 'x'));
+        EXPECT_EQ(digest.size(), 64U);
+        EXPECT_NE(digest, last);
+        last = digest;
+    }
+}
+
+}  // namespace
+}  // namespace hitchview::calib
