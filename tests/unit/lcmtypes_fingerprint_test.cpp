@@ -81,7 +81,8 @@ TEST(FingerprintTest, TheImageIsTheOneOfLibbot) {
 
     // Also found in code that others generated from libbot's image_t.
     EXPECT_EQ(image.base(), 0x6fee6cb20472ff6aULL);
-    EXPECT_EQ(WireFingerprint(bot_core_image_t_encode), image.Fingerprint(metadata.Fingerprint()));
+    EXPECT_EQ(image.Fingerprint(metadata.Fingerprint()), 0x14739ffe13d5f5f0ULL);
+    EXPECT_EQ(WireFingerprint(bot_core_image_t_encode), 0x14739ffe13d5f5f0ULL);
 }
 
 TEST(FingerprintTest, ThePanoramaStatusHasNotChanged) {

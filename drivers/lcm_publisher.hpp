@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/lcm_handle.hpp"
+#include "drivers/lcm_url.hpp"
+#include "hal/clock.hpp"
+#include "hal/publisher.hpp"
+
+namespace hitchview::drivers {
+
+struct LcmPublisherOptions {
+    std::string url = kDefaultLcmUrl;
+    std::string panorama_channel = "PANORAMA";
+    std::string status_channel = "PANORAMA_STATUS";
+    std::string hitch_angle_channel = "HITCH_ANGLE";
+    int max_image_bytes = 1 << 20;  ///< largest JPEG. [1024, 8388608]
+};
+
+/// Panorama as bot_core.image_t, status and hitch angle as hitchview types, over LCM. Messages are
+/// encoded into one buffer taken at construction; publishing allocates nothing.
+class LcmPublisher final : public hal::Publisher {
+ public:
+    /// `clock` must outlive the publisher.
+    static hal::Checked<std::unique_ptr<LcmPublisher>> Create(const LcmPublisherOptions& options,
+                                                              const hal::Clock& clock);
+
+ private:
+    LcmPublisher(const LcmPublisherOptions& options, LcmHandle lcm, const hal::Clock& clock);
+
+    hal::Result<hal::Done> DoPublish(const hal::PanoramaImage& image) override;
+    hal::Result<hal::Done> DoPublish(const hal::PanoramaStatus& status) override;
+    hal::Result<hal::Done> DoPublish(const hal::HitchAngle& angle) override;
+
+    template <typename Message>
+    hal::Result<hal::Done> Send(const std::string& channel, const Message& message,
+                                int (*encode)(void*, int, int, const Message*));
+
+    LcmPublisherOptions options_;
+    LcmHandle lcm_;
+    const hal::Clock& clock_;
+    std::vector<std::uint8_t> buffer_;
+    std::uint32_t hitch_angle_sequence_ = 0;
+};
+
+}  // namespace hitchview::drivers

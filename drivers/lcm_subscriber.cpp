@@ -1,0 +1,73 @@
+#include "drivers/lcm_subscriber.hpp"
+
+#include <algorithm>
+
+#include "drivers/lcm_image_message.hpp"
+
+namespace hitchview::drivers {
+namespace {
+
+using hal::Checked;
+using hal::Done;
+using hal::Error;
+using hal::PanoramaImage;
+using hal::Result;
+
+constexpr int kReceiveBufferBytes = 8 << 20;
+constexpr int kSmallestMessageBytes = 1024;
+constexpr int kLargestMessageBytes = 64 << 20;
+
+Checked<Done> Check(const LcmSubscriberOptions& options) {
+    if (auto url = CheckLcmUrl(options.url); !url) return url;
+    if (auto name = CheckLcmChannel("channel", options.channel); !name) return name;
+    const int bytes = options.max_message_bytes;
+    if (bytes >= kSmallestMessageBytes && bytes <= kLargestMessageBytes) return Done{};
+    return "max_message_bytes is " + std::to_string(bytes) + ", must be " +
+           std::to_string(kSmallestMessageBytes) + " to " + std::to_string(kLargestMessageBytes);
+}
+
+}  // namespace
+
+Checked<std::unique_ptr<LcmSubscriber>> LcmSubscriber::Create(const LcmSubscriberOptions& options) {
+    if (auto checked = Check(options); !checked) return checked.error();
+    LcmHandle lcm{lcm_create(WithReceiveBuffer(options.url, kReceiveBufferBytes).c_str())};
+    if (lcm) {
+        std::unique_ptr<LcmSubscriber> self(new LcmSubscriber(options, std::move(lcm)));
+        if (self->Subscribe(options.channel)) return self;
+    }
+    return "LCM cannot use '" + options.url +
+           "': is there a route to 224.0.0.0/4 and the flag 'multicast' on its interface?";
+}
+
+LcmSubscriber::LcmSubscriber(const LcmSubscriberOptions& options, LcmHandle lcm)
+    : lcm_(std::move(lcm)), message_(static_cast<std::size_t>(options.max_message_bytes)) {}
+
+bool LcmSubscriber::Subscribe(const std::string& channel) {
+    const auto handler = [](const lcm_recv_buf_t* message, const char*, void* self) {
+        static_cast<LcmSubscriber*>(self)->OnMessage(
+            {static_cast<const std::uint8_t*>(message->data), message->data_size});
+    };
+    lcm_subscription_t* const subscription =
+        lcm_subscribe(lcm_.get(), channel.c_str(), handler, this);
+    return subscription != nullptr && lcm_subscription_set_queue_capacity(subscription, 1) == 0;
+}
+
+Result<PanoramaImage> LcmSubscriber::WaitImage(std::chrono::milliseconds timeout) {
+    HV_EXPECT(timeout.count() >= 0);
+    image_ = Error::kTimeout;
+    const int handled = lcm_handle_timeout(lcm_.get(), static_cast<int>(timeout.count()));
+    if (handled < 0) return Error::kFailed;
+    return image_;
+}
+
+void LcmSubscriber::OnMessage(std::span<const std::uint8_t> message) {
+    if (message.size() > message_.size()) {
+        image_ = Error::kTooLarge;
+    } else {
+        std::copy(message.begin(), message.end(), message_.begin());
+        image_ = ParseImageMessage({message_.data(), message.size()});
+    }
+    ++(image_ ? received_ : refused_);
+}
+
+}  // namespace hitchview::drivers

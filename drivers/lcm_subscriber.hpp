@@ -1,0 +1,51 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/lcm_handle.hpp"
+#include "drivers/lcm_url.hpp"
+#include "hal/publisher.hpp"
+#include "hal/result.hpp"
+
+namespace hitchview::drivers {
+
+struct LcmSubscriberOptions {
+    std::string url = kDefaultLcmUrl;
+    std::string channel = "PANORAMA";
+    int max_message_bytes = 9 << 20;  ///< larger ones are refused. [1024, 67108864]
+};
+
+/// Receives panoramas. At most one message waits, so that a slow reader does not see an ever older
+/// picture; the kernel is asked for a receive buffer of 8 MiB. Thread: the one that calls
+/// WaitImage.
+class LcmSubscriber {
+ public:
+    static hal::Checked<std::unique_ptr<LcmSubscriber>> Create(const LcmSubscriberOptions& options);
+
+    /// Blocks until a message comes, at most `timeout`. The image is borrowed until the next call.
+    /// kTimeout: none came; ordinary. kCorrupted: one came and is not a sound panorama. kTooLarge:
+    /// it does not fit max_message_bytes. kFailed: LCM gave up.
+    hal::Result<hal::PanoramaImage> WaitImage(std::chrono::milliseconds timeout);
+
+    [[nodiscard]] std::uint64_t received() const { return received_; }  ///< sound ones, since start
+    [[nodiscard]] std::uint64_t refused() const { return refused_; }    ///< the others, since start
+
+ private:
+    LcmSubscriber(const LcmSubscriberOptions& options, LcmHandle lcm);
+
+    bool Subscribe(const std::string& channel);
+    void OnMessage(std::span<const std::uint8_t> message);
+
+    LcmHandle lcm_;
+    std::vector<std::uint8_t> message_;
+    hal::Result<hal::PanoramaImage> image_ = hal::Error::kTimeout;
+    std::uint64_t received_ = 0;
+    std::uint64_t refused_ = 0;
+};
+
+}  // namespace hitchview::drivers

@@ -1,0 +1,208 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <lcm/eventlog.h>
+
+#include <cmath>
+#include <string>
+
+#include "drivers/lcm_publisher.hpp"
+#include "drivers/lcm_subscriber.hpp"
+#include "hal/fake_clock.hpp"
+#include "lcmtypes/bot_core_image_t.h"
+#include "lcmtypes/hitchview_hitch_angle_t.h"
+#include "lcmtypes/hitchview_panorama_status_t.h"
+
+namespace hitchview::drivers {
+namespace {
+
+using hal::Error;
+using hal::Instant;
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+/// LCM writes to a log file instead of the network.
+class LcmPublisherTest : public testing::Test {
+ protected:
+    LcmPublisherTest() : log_(testing::TempDir() + TestName() + ".lcmlog") {}
+    ~LcmPublisherTest() override { std::remove(log_.c_str()); }
+
+    std::unique_ptr<LcmPublisher> Publisher(int max_image_bytes = 4096) const {
+        auto publisher = LcmPublisher::Create(
+            {.url = "file://" + log_ + "?mode=w", .max_image_bytes = max_image_bytes}, clock_);
+        EXPECT_TRUE(publisher) << publisher.error();
+        return std::move(publisher.value());
+    }
+
+    /// The only message of the log.
+    template <typename Message>
+    Message Read(const std::string& channel, int (*decode)(const void*, int, int, Message*)) const {
+        Message message{};
+        lcm_eventlog_t* const log = lcm_eventlog_create(log_.c_str(), "r");
+        lcm_eventlog_event_t* const event = lcm_eventlog_read_next_event(log);
+        EXPECT_EQ(std::string(event->channel, event->channellen), channel);
+        EXPECT_EQ(decode(event->data, 0, event->datalen, &message), event->datalen);
+        EXPECT_EQ(lcm_eventlog_read_next_event(log), nullptr);
+        lcm_eventlog_free_event(event);
+        lcm_eventlog_destroy(log);
+        return message;
+    }
+
+    std::string log_;
+    hal::FakeClock clock_;
+
+ private:
+    static std::string TestName() {
+        return testing::UnitTest::GetInstance()->current_test_info()->name();
+    }
+};
+
+const std::vector<std::uint8_t> kJpeg{0xFF, 0xD8, 1, 2, 3, 0xFF, 0xD9};
+
+hal::PanoramaImage Image(std::span<const std::uint8_t> jpeg) {
+    return {.sequence = 4'000'000'000,
+            .captured_from = milliseconds(20),
+            .captured_until = milliseconds(25),
+            .width_px = 2048,
+            .height_px = 360,
+            .cameras_missing = 0x81,
+            .calibration_id = "5f3c",
+            .jpeg = jpeg};
+}
+
+std::string Text(const bot_core_image_metadata_t& entry) {
+    return std::string(entry.key) + '=' + std::string(entry.value, entry.value + entry.n);
+}
+
+TEST_F(LcmPublisherTest, APanoramaIsAnImageOfLibbotWithItsPropertiesAsText) {
+    ASSERT_TRUE(Publisher()->Publish(Image(kJpeg)));
+
+    auto message = Read("PANORAMA", bot_core_image_t_decode);
+    EXPECT_EQ(message.utime, 1'700'000'000'020'000);
+    EXPECT_EQ(message.width, 2048);
+    EXPECT_EQ(message.height, 360);
+    EXPECT_EQ(message.row_stride, 0);
+    EXPECT_EQ(message.pixelformat, BOT_CORE_IMAGE_T_PIXEL_FORMAT_MJPEG);
+    EXPECT_EQ(std::vector<std::uint8_t>(message.data, message.data + message.size), kJpeg);
+    ASSERT_EQ(message.nmetadata, 5);
+    EXPECT_EQ(Text(message.metadata[0]), "sequence=4000000000");
+    EXPECT_EQ(Text(message.metadata[1]), "captured_from_ns=20000000");
+    EXPECT_EQ(Text(message.metadata[2]), "captured_until_ns=25000000");
+    EXPECT_EQ(Text(message.metadata[3]), "cameras_missing=0x00000081");
+    EXPECT_EQ(Text(message.metadata[4]), "calibration_id=5f3c");
+    bot_core_image_t_decode_cleanup(&message);
+}
+
+TEST_F(LcmPublisherTest, OurSubscriberReadsWhatWasPublished) {
+    ASSERT_TRUE(Publisher()->Publish(Image(kJpeg)));
+
+    auto subscriber = LcmSubscriber::Create({.url = "file://" + log_ + "?mode=r&speed=0"});
+    ASSERT_TRUE(subscriber) << subscriber.error();
+    const auto result = subscriber.value()->WaitImage(milliseconds(1000));
+    ASSERT_TRUE(result) << ToString(result.error());
+    const hal::PanoramaImage& image = result.value();
+    EXPECT_EQ(image.sequence, 4'000'000'000U);
+    EXPECT_EQ(image.captured_from, milliseconds(20));
+    EXPECT_EQ(image.captured_until, milliseconds(25));
+    EXPECT_EQ(image.cameras_missing, 0x81U);
+    EXPECT_EQ(image.calibration_id, "5f3c");
+    EXPECT_EQ(std::vector<std::uint8_t>(image.jpeg.begin(), image.jpeg.end()), kJpeg);
+    EXPECT_EQ(subscriber.value()->received(), 1U);
+}
+
+TEST_F(LcmPublisherTest, TheLargestImageFitsAndOneByteMoreDoesNot) {
+    const auto publisher = Publisher(4096);
+    const std::vector<std::uint8_t> jpeg(4097, 7);
+
+    const auto too_large = publisher->Publish(Image(jpeg));
+    ASSERT_FALSE(too_large);
+    EXPECT_EQ(too_large.error(), Error::kTooLarge);
+    EXPECT_TRUE(publisher->Publish(Image(std::span(jpeg).first(4096))));
+}
+
+TEST_F(LcmPublisherTest, ACalibrationIdThatDoesNotFitIsTooLarge) {
+    const std::string id(2000, 'x');
+    hal::PanoramaImage image = Image(std::vector<std::uint8_t>(4096, 7));
+    const std::vector<std::uint8_t> jpeg(4096, 7);
+    image.jpeg = jpeg;
+    image.calibration_id = id;
+
+    const auto result = Publisher(4096)->Publish(image);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error(), Error::kTooLarge);
+}
+
+TEST_F(LcmPublisherTest, AStatusKeepsEveryField) {
+    ASSERT_TRUE(Publisher()->Publish(
+        hal::PanoramaStatus{.sequence = 9,
+                            .captured_from = milliseconds(30),
+                            .published_at = milliseconds(70),
+                            .cameras_missing = 2,
+                            .seams = {hal::SeamState::kLocked, hal::SeamState::kCoast},
+                            .seam_matches = {41, 3},
+                            .unit_features = {300, 280},
+                            .total_ms = 12.5,
+                            .deadline_misses = 6,
+                            .dropped = 1}));
+
+    const auto message = Read("PANORAMA_STATUS", hitchview_panorama_status_t_decode);
+    EXPECT_EQ(message.sequence, 9);
+    EXPECT_EQ(message.utime, 1'700'000'000'030'000);
+    EXPECT_EQ(message.capture_ns, 30'000'000);
+    EXPECT_EQ(message.publish_ns, 70'000'000);
+    EXPECT_EQ(message.cameras_missing, 2);
+    EXPECT_EQ(message.seam_state[0], HITCHVIEW_PANORAMA_STATUS_T_SEAM_LOCKED);
+    EXPECT_EQ(message.seam_state[1], HITCHVIEW_PANORAMA_STATUS_T_SEAM_COAST);
+    EXPECT_EQ(message.seam_matches[0], 41);
+    EXPECT_EQ(message.seam_matches[1], 3);
+    EXPECT_EQ(message.unit_features[0], 300);
+    EXPECT_EQ(message.unit_features[1], 280);
+    EXPECT_EQ(message.total_ms, 12.5);
+    EXPECT_EQ(message.deadline_misses, 6);
+    EXPECT_EQ(message.dropped, 1);
+}
+
+TEST_F(LcmPublisherTest, AValidHitchAngleIsSentWithItsMoment) {
+    ASSERT_TRUE(Publisher()->Publish(hal::HitchAngle{.angle_rad = -0.3,
+                                                     .quality = hal::HitchAngleQuality::kValid,
+                                                     .received_at = milliseconds(5)}));
+
+    const auto message = Read("HITCH_ANGLE", hitchview_hitch_angle_t_decode);
+    EXPECT_EQ(message.sequence, 0);
+    EXPECT_EQ(message.utime, 1'700'000'000'005'000);
+    EXPECT_EQ(message.capture_ns, 5'000'000);
+    EXPECT_EQ(message.valid, 1);
+    EXPECT_EQ(message.quality, HITCHVIEW_HITCH_ANGLE_T_QUALITY_VALID);
+    EXPECT_EQ(message.angle_rad, -0.3);
+}
+
+TEST_F(LcmPublisherTest, AHitchAngleThatIsNotValidIsNotANumber) {
+    ASSERT_TRUE(Publisher()->Publish(
+        hal::HitchAngle{.angle_rad = 0.1, .quality = hal::HitchAngleQuality::kError}));
+
+    const auto message = Read("HITCH_ANGLE", hitchview_hitch_angle_t_decode);
+    EXPECT_EQ(message.valid, 0);
+    EXPECT_EQ(message.quality, HITCHVIEW_HITCH_ANGLE_T_QUALITY_ERROR);
+    EXPECT_TRUE(std::isnan(message.angle_rad));
+}
+
+TEST(LcmPublisherOptionsTest, AMistakeIsNamed) {
+    const hal::FakeClock clock;
+    const struct {
+        LcmPublisherOptions options;
+        const char* says;
+    } cases[] = {
+        {{.url = "udpm://1.2.3.4:5"}, "address is '1.2.3.4'"},
+        {{.panorama_channel = ".*"}, "panorama_channel is '.*'"},
+        {{.status_channel = ""}, "status_channel is ''"},
+        {{.hitch_angle_channel = "A B"}, "hitch_angle_channel is 'A B'"},
+        {{.max_image_bytes = 100}, "max_image_bytes is 100, must be 1024 to 8388608"},
+    };
+    for (const auto& c : cases) {
+        const auto publisher = LcmPublisher::Create(c.options, clock);
+        ASSERT_FALSE(publisher) << c.says;
+        EXPECT_THAT(publisher.error(), HasSubstr(c.says));
+    }
+}
+
+}  // namespace
+}  // namespace hitchview::drivers
