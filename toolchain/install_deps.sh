@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# Installs what Hitchview needs to build and test, from the packages of Debian 12 or Ubuntu 22.04.
+# Returns at once when everything is there.
+#
+#   toolchain/install_deps.sh
+set -euo pipefail
+
+packages=(
+    g++ cmake ninja-build ccache pkg-config
+    libeigen3-dev libopencv-dev liblcm-dev liblcm-bin libyaml-cpp-dev libcli11-dev
+    nlohmann-json3-dev libturbojpeg0-dev
+    libgtest-dev libgmock-dev libbenchmark-dev
+    iproute2 util-linux
+)
+
+is_installed() {
+    [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
+}
+
+# The name under which this release has a package: Ubuntu has also spelled TurboJPEG's without the 0.
+package_name() {
+    if [[ "$1" == libturbojpeg0-dev ]] && ! apt-cache show "$1" >/dev/null 2>&1; then
+        echo libturbojpeg-dev
+    else
+        echo "$1"
+    fi
+}
+
+is_satisfied() {
+    is_installed "$1" || { [[ "$1" == libturbojpeg0-dev ]] && is_installed libturbojpeg-dev; }
+}
+
+as_root() {
+    if [[ "$(id --user)" -eq 0 ]]; then "$@"; else sudo "$@"; fi
+}
+
+install_once() {
+    as_root apt-get update &&
+        as_root env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends "$@"
+}
+
+if ! command -v dpkg-query >/dev/null; then
+    echo "install_deps.sh: no dpkg on this system; install by hand: ${packages[*]}" >&2
+    exit 3
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+    is_satisfied "$package" || missing+=("$package")
+done
+[[ ${#missing[@]} -gt 0 ]] || exit 0
+
+echo "Installing ${missing[*]}"
+if [[ " ${missing[*]} " == *" libturbojpeg0-dev "* ]]; then
+    as_root apt-get update || true # a fresh image knows no package names yet
+fi
+names=()
+for package in "${missing[@]}"; do
+    names+=("$(package_name "$package")")
+done
+
+# Mirrors and networks hiccup: one more try, then the error stands.
+install_once "${names[@]}" || { sleep 5 && install_once "${names[@]}"; }
