@@ -1,0 +1,102 @@
+#include "algo/exposure_gains.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace hitchview::algo {
+namespace {
+
+constexpr int kStride = 2;       // corners of the map
+constexpr int kPatch = 8;        // px of the camera, averaged
+constexpr double kDark = 12;     // grey levels where noise rules
+constexpr double kBright = 243;  // and where the sensor is full
+constexpr double kPrior = 0.02;  // weight of "gain 1" against all shared corners together
+
+int SourceIndex(Unit unit, int camera) {
+    return static_cast<int>(unit) * static_cast<int>(kMaxCameras) + camera;
+}
+
+/// Mean grey around (x, y); negative when it does not lie inside.
+double MeanAround(const CameraFrame& frame, float x, float y) {
+    const int x0 = static_cast<int>(x) - kPatch / 2;
+    const int y0 = static_cast<int>(y) - kPatch / 2;
+    if (x0 < 0 || y0 < 0 || x0 + kPatch > frame.width_px || y0 + kPatch > frame.height_px) return -1;
+    int sum = 0;
+    for (int r = 0; r < kPatch; ++r) {
+        const std::uint8_t* row = frame.luma + static_cast<std::ptrdiff_t>(y0 + r) * frame.luma_stride_bytes + x0;
+        for (int c = 0; c < kPatch; ++c) sum += row[c];
+    }
+    return sum / double{kPatch * kPatch};
+}
+
+}  // namespace
+
+void ExposureGains::Collect(const ComposedMap& map, const RigFrames& frames, Table& sum, Table& count) const {
+    struct Seen {
+        int source;
+        double grey;
+    };
+    FixedVector<Seen, kSources> seen;
+    for (int row = 0; row <= map.block_rows(); row += kStride) {
+        for (int col = 0; col <= map.block_cols(); col += kStride) {
+            seen.clear();
+            for (int s = 0; s < map.cameras(); ++s) {
+                const ComposedMap::Corner& corner = map.corner(s, row, col);
+                const CameraFrame& frame = frames[map.unit_of(s)][static_cast<std::size_t>(map.camera_of(s))];
+                if (!corner.sees || !frame.present()) continue;
+                const double grey = MeanAround(frame, corner.x, corner.y);
+                if (grey < kDark || grey > kBright) continue;
+                seen.push_back({SourceIndex(map.unit_of(s), map.camera_of(s)), grey});
+            }
+            for (const Seen& i : seen) {
+                for (const Seen& j : seen) {
+                    if (i.source == j.source) continue;
+                    sum(i.source, j.source) += std::log(i.grey);
+                    count(i.source, j.source) += 1;
+                }
+            }
+        }
+    }
+}
+
+void ExposureGains::Update(const ComposedMap& map, const RigFrames& frames) {
+    Table sum = Table::Zero();
+    Table count = Table::Zero();
+    Collect(map, frames, sum, count);
+    const double total = count.sum();
+    if (total < 16) return;
+    Table normal = kPrior * Table::Identity();
+    Eigen::Matrix<double, kSources, 1> right = Eigen::Matrix<double, kSources, 1>::Zero();
+    for (int i = 0; i < kSources; ++i) {
+        for (int j = 0; j < kSources; ++j) {
+            if (i == j || count(i, j) == 0) continue;
+            const double n = count(i, j) / total;
+            const double difference = (sum(j, i) - sum(i, j)) / count(i, j);
+            normal(i, i) += n;
+            normal(i, j) -= n;
+            right(i) += n * difference;
+        }
+    }
+    const Eigen::Matrix<double, kSources, 1> wanted = normal.ldlt().solve(right);
+    log_gain_ += (known_ ? follow_ : 1.0) * (wanted - log_gain_);
+    known_ = true;
+}
+
+void ExposureGains::Reset() {
+    log_gain_.setZero();
+    known_ = false;
+}
+
+CameraGains ExposureGains::gains() const {
+    CameraGains gains;
+    for (const Unit unit : kUnits) {
+        for (std::size_t i = 0; i < kMaxCameras; ++i) {
+            const double g = log_gain_(SourceIndex(unit, static_cast<int>(i)));
+            gains[unit][i] = static_cast<float>(std::exp(std::clamp(g, -1.0, 1.0)));
+        }
+    }
+    return gains;
+}
+
+}  // namespace hitchview::algo

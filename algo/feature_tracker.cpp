@@ -1,0 +1,54 @@
+#include "algo/feature_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hitchview::algo {
+namespace {
+
+using Eigen::Vector2f;
+
+bool Allowed(const cv::Mat1b& mask, const Vector2f& point) {
+    const auto x = static_cast<int>(std::lround(point.x()));
+    const auto y = static_cast<int>(std::lround(point.y()));
+    return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask(y, x) != 0;
+}
+
+}  // namespace
+
+FeatureTracker::FeatureTracker(int width_px, int height_px, const FeatureTrackerOptions& options)
+    : options_(options), detector_(width_px, height_px, options.corners) {}
+
+void FeatureTracker::Follow(const GreyPyramid& early, const GreyPyramid& late,
+                            const cv::Mat1b& mask, Tracks& tracks) {
+    FollowFeatures(early, late, mask, tracks);
+    features_.clear();
+    for (const Track& track : tracks) features_.push_back(track.late_px);
+    Replenish(late.level(0), mask);
+}
+
+void FeatureTracker::FollowFeatures(const GreyPyramid& early, const GreyPyramid& late,
+                                    const cv::Mat1b& mask, Tracks& tracks) {
+    tracks.clear();
+    for (const Vector2f& from : features_) {
+        const auto there =
+            AlignPatch(early, late, from, from, options_.coarsest_level, options_.alignment);
+        if (!there || there->correlation < options_.min_correlation ||
+            !Allowed(mask, there->position_px)) {
+            continue;
+        }
+        const auto back = AlignPatch(late, early, there->position_px, from, 0, options_.alignment);
+        if (!back || (back->position_px - from).norm() > options_.max_round_trip_px) continue;
+        tracks.push_back({from, there->position_px});
+    }
+}
+
+void FeatureTracker::Replenish(const cv::Mat1b& late, const cv::Mat1b& mask) {
+    const int wanted = std::min<int>(options_.features, kMaxFeatures) - features_.count();
+    // A few lost features are not worth a search of the whole picture.
+    if (wanted * 10 < options_.features) return;
+    detector_.Detect(late, mask, {features_.data(), features_.size()}, wanted, corners_);
+    for (const Corner& corner : corners_) features_.push_back(corner.position_px);
+}
+
+}  // namespace hitchview::algo

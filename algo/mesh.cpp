@@ -1,0 +1,33 @@
+#include "algo/mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hitchview::algo {
+
+using Eigen::Vector2d;
+using Eigen::Vector2f;
+
+Vector2d Sample(const Mesh& mesh, const VertexField& field, const Vector2d& pixel) {
+    const double x = mesh.ring ? WrapColumn(pixel.x(), mesh.width_px) : pixel.x();
+    const double u = std::clamp((x - mesh.origin_px.x()) / mesh.cell_px.x(), 0.0, Mesh::kCols - 1e-6);
+    const double v = std::clamp((pixel.y() - mesh.origin_px.y()) / mesh.cell_px.y(), 0.0, Mesh::kRows - 1e-6);
+    const int col = static_cast<int>(u);
+    const int row = static_cast<int>(v);
+    const auto fx = static_cast<float>(u - col);
+    const auto fy = static_cast<float>(v - row);
+    const int i = Mesh::Index(row, col);
+    const int below = i + Mesh::kVertexCols;
+    const Vector2f top = (1 - fx) * field.col(i) + fx * field.col(i + 1);
+    const Vector2f bottom = (1 - fx) * field.col(below) + fx * field.col(below + 1);
+    return ((1 - fy) * top + fy * bottom).cast<double>();
+}
+
+void CloseRing(const Mesh& mesh, VertexField& field) {
+    if (!mesh.ring) return;
+    for (int row = 0; row < Mesh::kVertexRows; ++row) {
+        field.col(Mesh::Index(row, Mesh::kCols)) = field.col(Mesh::Index(row, 0));
+    }
+}
+
+}  // namespace hitchview::algo

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "algo/projection.hpp"
+
+namespace hitchview::algo {
+
+/// A regular grid of vertices over a picture; cell corners lie on the picture's outer pixels.
+/// On a ring the last column of vertices is the first one again.
+struct Mesh {
+    static constexpr int kRows = 10;  ///< cells
+    static constexpr int kCols = 32;
+    static constexpr int kVertexRows = kRows + 1;
+    static constexpr int kVertexCols = kCols + 1;
+    static constexpr int kVertices = kVertexRows * kVertexCols;
+
+    explicit Mesh(const Projection& picture)
+        : ring(picture.IsRing()),
+          width_px(picture.width_px),
+          cell_px((ring ? picture.width_px : picture.width_px - 1) / double{kCols},
+                  (picture.height_px - 1) / double{kRows}),
+          origin_px(ring ? -0.5 : 0.0, 0.0) {}
+
+    static constexpr int Index(int row, int col) { return row * kVertexCols + col; }
+    [[nodiscard]] Eigen::Vector2d Vertex(int row, int col) const {
+        return origin_px + Eigen::Vector2d{col * cell_px.x(), row * cell_px.y()};
+    }
+
+    bool ring;
+    double width_px;
+    Eigen::Vector2d cell_px;
+    Eigen::Vector2d origin_px;
+};
+
+/// Motion of every vertex, px; column Mesh::Index(row, col).
+using VertexField = Eigen::Matrix<float, 2, Mesh::kVertices>;
+/// One number for every vertex.
+using VertexScalars = Eigen::Matrix<float, 1, Mesh::kVertices>;
+
+/// `field` at `pixel`, bilinear; outside the mesh the nearest edge's value.
+Eigen::Vector2d Sample(const Mesh& mesh, const VertexField& field, const Eigen::Vector2d& pixel);
+
+/// On a ring: makes the last column equal to the first.
+void CloseRing(const Mesh& mesh, VertexField& field);
+
+}  // namespace hitchview::algo

@@ -1,0 +1,151 @@
+#include "algo/semi_surround_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace hitchview::algo {
+namespace {
+
+/// Features keep this far from where two cameras meet and from where the view ends, analysis px.
+constexpr int kJointMargin_px = 7;
+
+/// Camera pixels per radian near the optical axis over analysis pixels per radian, as a power of 2.
+int ReductionFor(const UnitGeometry& geometry, double scale) {
+    const Projection& view = geometry.view();
+    double ratio = 1 / scale;
+    if (view.IsRing()) {
+        Eigen::Vector2d a;
+        Eigen::Vector2d b;
+        UnitGeometry::Sights sights;
+        for (double x = 0; x < view.width_px; x += 1) {
+            geometry.See(view.Ray({x, view.horizon_y_px}), sights);
+            if (sights.empty()) continue;
+            const int camera = sights[0].camera;
+            if (!geometry.Project(camera, view.Ray({x, view.horizon_y_px}), a) ||
+                !geometry.Project(camera, view.Ray({x + 1, view.horizon_y_px}), b)) {
+                continue;
+            }
+            ratio = (a - b).norm() / scale;
+            break;
+        }
+    }
+    int reduction = 1;
+    while (reduction < 8 && reduction * 1.5 < ratio) reduction *= 2;
+    return reduction;
+}
+
+}  // namespace
+
+SemiSurroundView::SemiSurroundView(const UnitGeometry& geometry, double scale)
+    : geometry_(&geometry), scale_(scale), reduction_(ReductionFor(geometry, scale)) {
+    const Projection analysis = geometry.view().Scaled(scale);
+    camera_ = cv::Mat_<std::uint8_t>(analysis.height_px, analysis.width_px, kNoCamera);
+    sources_.resize(camera_.total());
+    for (int i = 0; i < geometry.cameras(); ++i) {
+        reduced_[static_cast<std::size_t>(i)] =
+            cv::Mat1b(geometry.camera_height_px(i) / reduction_,
+                      geometry.camera_width_px(i) / reduction_, std::uint8_t{0});
+    }
+    BuildMap();
+    MaskJoints();
+    mask_ = calibrated_mask_.clone();
+}
+
+void SemiSurroundView::BuildMap() {
+    UnitGeometry::Sights sights;
+    for (int y = 0; y < camera_.rows; ++y) {
+        for (int x = 0; x < camera_.cols; ++x) {
+            const Eigen::Vector2d view =
+                ToView({static_cast<float>(x), static_cast<float>(y)});
+            geometry_->See(geometry_->view().Ray(view), sights);
+            const auto best = std::max_element(
+                sights.begin(), sights.end(),
+                [](const CameraSight& a, const CameraSight& b) { return a.weight < b.weight; });
+            if (best == sights.end()) continue;
+            const Eigen::Vector2d pixel = (best->pixel.array() + 0.5) / reduction_ - 0.5;
+            const cv::Mat1b& reduced = reduced_[static_cast<std::size_t>(best->camera)];
+            if (pixel.minCoeff() < 0 || pixel.x() > reduced.cols - 1.01 ||
+                pixel.y() > reduced.rows - 1.01) {
+                continue;
+            }
+            camera_(y, x) = static_cast<std::uint8_t>(best->camera);
+            constexpr double kUnit = 1 << kFractionBits;
+            sources_[static_cast<std::size_t>(y * camera_.cols + x)] = {
+                static_cast<std::int16_t>(std::lround(pixel.x() * kUnit)),
+                static_cast<std::int16_t>(std::lround(pixel.y() * kUnit))};
+        }
+    }
+}
+
+void SemiSurroundView::MaskJoints() {
+    cv::Mat lowest;
+    cv::Mat highest;
+    const cv::Mat window =
+        cv::Mat::ones(2 * kJointMargin_px + 1, 2 * kJointMargin_px + 1, CV_8U);
+    cv::erode(camera_, lowest, window);
+    cv::dilate(camera_, highest, window);
+    calibrated_mask_ = (lowest == highest) & (camera_ != kNoCamera);
+}
+
+void SemiSurroundView::Compose(const UnitFrames& frames, cv::Mat1b& view) {
+    for (int i = 0; i < geometry_->cameras(); ++i) {
+        const CameraFrame& frame = frames[static_cast<std::size_t>(i)];
+        if (frame.present()) Reduce(frame, reduced_[static_cast<std::size_t>(i)]);
+    }
+    constexpr int kOne = 1 << kFractionBits;
+    for (int y = 0; y < camera_.rows; ++y) {
+        const std::uint8_t* camera = camera_[y];
+        const Source* source = sources_.data() + static_cast<std::ptrdiff_t>(y) * camera_.cols;
+        std::uint8_t* out = view[y];
+        for (int x = 0; x < camera_.cols; ++x) {
+            if (camera[x] == kNoCamera || !frames[camera[x]].present()) {
+                out[x] = 0;
+                continue;
+            }
+            const cv::Mat1b& from = reduced_[camera[x]];
+            const int fx = source[x].x & (kOne - 1);
+            const int fy = source[x].y & (kOne - 1);
+            const std::uint8_t* a = from[source[x].y >> kFractionBits] + (source[x].x >> kFractionBits);
+            const std::uint8_t* b = a + from.step1();
+            const int top = a[0] * (kOne - fx) + a[1] * fx;
+            const int bottom = b[0] * (kOne - fx) + b[1] * fx;
+            out[x] = static_cast<std::uint8_t>((top * (kOne - fy) + bottom * fy + kOne * kOne / 2) >>
+                                               (2 * kFractionBits));
+        }
+    }
+    UpdateMask(frames);
+}
+
+void SemiSurroundView::Reduce(const CameraFrame& frame, cv::Mat1b& reduced) const {
+    const int r = reduction_;
+    for (int y = 0; y < reduced.rows; ++y) {
+        const std::uint8_t* in = frame.luma + static_cast<std::ptrdiff_t>(y) * r * frame.luma_stride_bytes;
+        std::uint8_t* out = reduced[y];
+        for (int x = 0; x < reduced.cols; ++x) {
+            int sum = r * r / 2;
+            for (int v = 0; v < r; ++v) {
+                const std::uint8_t* row = in + static_cast<std::ptrdiff_t>(v) * frame.luma_stride_bytes + x * r;
+                for (int u = 0; u < r; ++u) sum += row[u];
+            }
+            out[x] = static_cast<std::uint8_t>(sum / (r * r));
+        }
+    }
+}
+
+void SemiSurroundView::UpdateMask(const UnitFrames& frames) {
+    unsigned missing = 0;
+    for (int i = 0; i < geometry_->cameras(); ++i) {
+        if (!frames[static_cast<std::size_t>(i)].present()) missing |= 1U << i;
+    }
+    if (missing == masked_cameras_) return;
+    masked_cameras_ = missing;
+    for (int y = 0; y < mask_.rows; ++y) {
+        for (int x = 0; x < mask_.cols; ++x) {
+            const bool gone = camera_(y, x) != kNoCamera && ((missing >> camera_(y, x)) & 1U) != 0;
+            mask_(y, x) = gone ? std::uint8_t{0} : calibrated_mask_(y, x);
+        }
+    }
+}
+
+}  // namespace hitchview::algo

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "algo/camera_frame.hpp"
+#include "algo/unit_geometry.hpp"
+
+namespace hitchview::algo {
+
+/// One unit's cameras composed into one grey picture at reduced size, for motion estimation only
+/// (paper, section 'Semi-Surround View'). No blending: each pixel comes from one camera, and the
+/// mask leaves out the joints, where a feature could belong to neither.
+class SemiSurroundView {
+ public:
+    /// Takes all memory. `scale`: analysis size / view size, (0, 1].
+    SemiSurroundView(const UnitGeometry& geometry, double scale);
+
+    /// Writes the view; a missing camera's part keeps the value 0 and is masked out.
+    void Compose(const UnitFrames& frames, cv::Mat1b& view);
+
+    /// Non-zero where features may lie in the last composed view.
+    [[nodiscard]] const cv::Mat1b& mask() const { return mask_; }
+    [[nodiscard]] int width_px() const { return calibrated_mask_.cols; }
+    [[nodiscard]] int height_px() const { return calibrated_mask_.rows; }
+
+    /// Pixel of the full-size view of a pixel of the analysis view, and back.
+    [[nodiscard]] Eigen::Vector2d ToView(const Eigen::Vector2f& analysis) const {
+        return (analysis.cast<double>().array() + 0.5) / scale_ - 0.5;
+    }
+    [[nodiscard]] Eigen::Vector2f ToAnalysis(const Eigen::Vector2d& view) const {
+        return (((view.array() + 0.5) * scale_) - 0.5).cast<float>();
+    }
+    [[nodiscard]] double scale() const { return scale_; }
+
+ private:
+    static constexpr std::uint8_t kNoCamera = 255;
+    static constexpr int kFractionBits = 5;
+    /// Where a pixel of the view lies in its camera's reduced picture, 1/32 px.
+    struct Source {
+        std::int16_t x = 0;
+        std::int16_t y = 0;
+    };
+
+    void BuildMap();
+    void MaskJoints();
+    void Reduce(const CameraFrame& frame, cv::Mat1b& reduced) const;
+    void UpdateMask(const UnitFrames& frames);
+
+    const UnitGeometry* geometry_;
+    double scale_;
+    int reduction_ = 1;  ///< camera pixels per reduced pixel, a power of two
+    std::array<cv::Mat1b, kMaxCameras> reduced_;
+    cv::Mat_<std::uint8_t> camera_;
+    std::vector<Source> sources_;
+    cv::Mat1b calibrated_mask_;
+    cv::Mat1b mask_;
+    unsigned masked_cameras_ = ~0U;
+};
+
+}  // namespace hitchview::algo

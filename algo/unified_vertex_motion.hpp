@@ -1,0 +1,122 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "algo/path_smoother.hpp"
+#include "algo/stitching_motion_field.hpp"
+#include "algo/task_runner.hpp"
+#include "algo/trailer_placement.hpp"
+#include "algo/unit_analysis.hpp"
+
+namespace hitchview::algo {
+
+enum class Border { kFree, kCovered };
+
+struct UnifiedVertexMotionOptions {
+    bool stabilize = true;
+    bool stitch = true;
+    int lookahead_frames = 0;        ///< 0..kMaxLookahead
+    Border border = Border::kFree;   ///< kFree: uncovered pixels are no data; kCovered: zoomed in
+    double cropping = 0.90;          ///< kCovered: share of the view's width that stays visible
+    double kappa = 0.5;              ///< who moves in an overlap: 0 the trailer, 1 the tractor
+    /// Plane: top-left pixel of each unit on the canvas, instead of matching.
+    PerUnit<std::optional<Eigen::Vector2d>> placement;
+};
+
+/// Where everything goes on the canvas at one moment: what the renderer needs.
+struct Composition {
+    PerUnit<Eigen::Matrix3d> M_canvas_view{{Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()}};
+    PerUnit<VertexField> view_offset{{VertexField::Zero(), VertexField::Zero()}};
+    VertexField discrepancy = VertexField::Zero();  ///< see StitchingMotionField
+    double kappa = 0.5;
+
+    PerOverlap<SeamState> seams{{SeamState::kNoOverlap, SeamState::kNoOverlap}};
+    PerOverlap<int> matches;
+    PerUnit<int> features;
+    PerUnit<PoseOffset> stabilization;  ///< S of each unit, for reports
+};
+
+/// Unified vertex motion in its live form (facts 4.6): causal, fixed memory, one step per frame set.
+/// A rig has a tractor and perhaps a trailer.
+class UnifiedVertexMotion {
+ public:
+    /// `geometry[kTrailer]` may be empty. The canvas and both views have the same projection.
+    UnifiedVertexMotion(const Projection& canvas, const PerUnit<std::optional<UnitGeometry>>& geometry,
+                        const UnifiedVertexMotionOptions& options);
+    ~UnifiedVertexMotion();
+
+    /// Before the first step: matches the two views of one frame set to lay them out on the canvas
+    /// (plane) or to find the trailer (ring). True once that is done; else try the next set.
+    bool Prime(const RigFrames& frames, TaskRunner& runner);
+
+    /// One frame set in. `late` = frames.lookahead: the composition for the set given that many
+    /// steps ago; empty while there is none yet.
+    const Composition* Step(const RigFrames& frames, TaskRunner& runner);
+    /// After the last set: the compositions that the lookahead still holds back, one per call.
+    const Composition* Flush();
+    /// Forgets everything that crosses frames; the layout stays.
+    void Reset();
+
+    [[nodiscard]] bool has_trailer() const { return trailer_view_.has_value(); }
+
+ private:
+    struct Record;
+    class Guidance;
+
+    void Analyse(const RigFrames& frames, TaskRunner& runner, Record& record);
+    void MatchUnits(Record& record);
+    bool AcquireTrailer(Record& record);
+    void Guide(Record& record);
+    void UpdateSeams(Record& record);
+
+    const Composition* Emit(std::int64_t index);
+    void Stabilise(std::int64_t index, Unit unit);
+    void PlaceTrailer(const Record& record);
+    void UpdateViewOffset(const Record& record, Unit unit);
+    void UpdateStitching(const Record& record);
+    void Compose(const Record& record);
+    [[nodiscard]] PathSmoother::Window Window(std::int64_t index, Unit unit) const;
+    [[nodiscard]] Eigen::Vector2d OnCanvas(Unit unit, const Eigen::Vector2d& view_px) const;
+    void LayOut();
+
+    [[nodiscard]] Record& At(std::int64_t index);
+    [[nodiscard]] const Record& At(std::int64_t index) const;
+    [[nodiscard]] const Projection& view(Unit unit) const {
+        return unit == Unit::kTractor ? tractor_view_ : *trailer_view_;
+    }
+    [[nodiscard]] int units() const { return has_trailer() ? 2 : 1; }
+
+    Projection canvas_;
+    Projection tractor_view_;
+    std::optional<Projection> trailer_view_;
+    UnifiedVertexMotionOptions options_;
+
+    PerUnit<std::unique_ptr<UnitAnalysis>> analysis_;
+    std::unique_ptr<ClassicalMatcher> matcher_;
+    std::unique_ptr<TrailerPlacement> placement_;
+    StitchingMotionField stitching_;
+    PerUnit<std::unique_ptr<PathSmoother>> smoother_;
+    std::unique_ptr<PathSmoother> hitch_smoother_;
+
+    Eigen::Matrix3d M_canvas_tractor_ = Eigen::Matrix3d::Identity();
+    PerUnit<Eigen::Matrix3d> M_loose_;  // plane, before anything was matched: canvas from view
+    PerUnit<std::array<Eigen::Matrix3d, 2>> stabilizer_;  // of the frames emitted last, newest first
+    std::array<Eigen::Matrix3d, 2> hitch_pose_;           // likewise: smoothed trailer placement
+    Eigen::Matrix3d raw_hitch_pose_ = Eigen::Matrix3d::Identity();  // before smoothing
+    double hitch_scale_ = 1;
+    bool hitch_known_ = false;
+    PerUnit<VertexField> view_offset_{{VertexField::Zero(), VertexField::Zero()}};
+    PerOverlap<int> frames_unmatched_;
+
+    static constexpr int kRecords = 16;
+    std::unique_ptr<std::array<Record, kRecords>> records_;
+    std::int64_t analysed_ = 0;  // frame sets seen
+    std::int64_t emitted_ = 0;
+    ViewPairs view_pairs_;
+    CanvasPairs canvas_pairs_;
+    Composition composition_;
+};
+
+}  // namespace hitchview::algo

@@ -1,0 +1,87 @@
+#include "algo/unit_geometry.hpp"
+
+#include <algorithm>
+
+namespace hitchview::algo {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Cameras are blended where their margins differ by less than this share of the picture's width.
+constexpr double kBlendWidth = 0.035;
+
+/// Distance to the nearer side edge as a share of the width; negative outside the picture.
+double SideMargin(const CameraModel& model, const Vector2d& pixel) {
+    if (pixel.y() < 0 || pixel.y() > model.height_px - 1) return -1;
+    return std::min(pixel.x(), model.width_px - 1 - pixel.x()) / model.width_px;
+}
+
+}  // namespace
+
+Vector3d AlignmentSurface::Hit(const Vector3d& ray) const {
+    const Vector3d level = ray / ray.head<2>().norm();
+    double distance = radius_m;
+    if (level.z() < 0) distance = std::min(distance, (ground_m - viewpoint_m) / level.z());
+    return Vector3d{0, 0, viewpoint_m} + distance * level;
+}
+
+UnitGeometry UnitGeometry::Plane(int width_px, int height_px) {
+    UnitGeometry geometry;
+    geometry.view_ = Projection::Plane(width_px, height_px);
+    geometry.camera_count_ = 1;
+    geometry.cameras_[0].model.width_px = width_px;
+    geometry.cameras_[0].model.height_px = height_px;
+    return geometry;
+}
+
+UnitGeometry UnitGeometry::Ring(const Projection& view, std::span<const CameraGeometry> cameras,
+                                const AlignmentSurface& surface) {
+    UnitGeometry geometry;
+    geometry.view_ = view;
+    geometry.surface_ = surface;
+    geometry.camera_count_ = static_cast<int>(std::min(cameras.size(), kMaxCameras));
+    for (int i = 0; i < geometry.camera_count_; ++i) {
+        const CameraGeometry& camera = cameras[static_cast<std::size_t>(i)];
+        geometry.cameras_[static_cast<std::size_t>(i)] = {
+            camera.model, camera.T_unit_camera.linear().transpose(),
+            camera.T_unit_camera.translation()};
+    }
+    return geometry;
+}
+
+bool UnitGeometry::Project(int camera, const Vector3d& ray, Vector2d& pixel) const {
+    if (!view_.IsRing()) {
+        pixel = ray.hnormalized();
+        return true;
+    }
+    const MountedCamera& c = mounted(camera);
+    const auto projected = c.model.Project(c.R_camera_unit * (surface_.Hit(ray) - c.position_m));
+    if (projected) pixel = *projected;
+    return projected.has_value();
+}
+
+void UnitGeometry::See(const Vector3d& ray, Sights& sights) const {
+    sights.clear();
+    if (!view_.IsRing()) {
+        sights.push_back({0, ray.hnormalized(), 1});
+        return;
+    }
+    double best = 0;
+    for (int i = 0; i < camera_count_; ++i) {
+        CameraSight sight{i, Vector2d::Zero(), 0};
+        if (!Project(i, ray, sight.pixel)) continue;
+        sight.weight = SideMargin(mounted(i).model, sight.pixel);
+        if (sight.weight < 0) continue;
+        best = std::max(best, sight.weight);
+        sights.push_back(sight);
+    }
+    double sum = 0;
+    for (CameraSight& sight : sights) {
+        sight.weight = std::max(0.0, sight.weight - best + kBlendWidth);
+        sum += sight.weight;
+    }
+    for (CameraSight& sight : sights) sight.weight /= sum;
+}
+
+}  // namespace hitchview::algo

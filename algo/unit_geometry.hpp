@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "algo/camera_model.hpp"
+#include "algo/fixed_vector.hpp"
+#include "algo/projection.hpp"
+
+namespace hitchview::algo {
+
+inline constexpr std::size_t kMaxCameras = 8;
+
+/// The surface on which the cameras of a ring are aligned: what lies on it shows no parallax.
+/// A vertical cylinder round the hitch axis, cut off below by the ground.
+struct AlignmentSurface {
+    double radius_m = 20;          ///< of the cylinder
+    double viewpoint_m = 1.3;      ///< height of the panorama's viewpoint above the hitch point
+    double ground_m = -0.4;        ///< height of the ground in the unit frame, below the viewpoint
+
+    /// Point of the surface, in the unit frame, that `ray` of the view hits.
+    [[nodiscard]] Eigen::Vector3d Hit(const Eigen::Vector3d& ray) const;
+};
+
+/// Where one camera sees a ray of its unit's view.
+struct CameraSight {
+    int camera;             ///< index within the unit
+    Eigen::Vector2d pixel;  ///< of the camera's picture
+    double weight;          ///< share in the view, 0..1; the shares of a ray add up to 1
+};
+
+/// How the cameras of one unit make up its semi-surround view.
+/// Plane: one camera, whose picture is the view. Ring: calibrated cameras on a cylinder round the
+/// hitch point. Neighbouring cameras are blended where both are about equally far from their edge.
+class UnitGeometry {
+ public:
+    using Sights = FixedVector<CameraSight, kMaxCameras>;
+
+    static UnitGeometry Plane(int width_px, int height_px);
+    /// 1..kMaxCameras cameras. `view`: a ring.
+    static UnitGeometry Ring(const Projection& view, std::span<const CameraGeometry> cameras,
+                             const AlignmentSurface& surface);
+
+    [[nodiscard]] const Projection& view() const { return view_; }
+    [[nodiscard]] int cameras() const { return camera_count_; }
+    [[nodiscard]] int camera_width_px(int camera) const { return mounted(camera).model.width_px; }
+    [[nodiscard]] int camera_height_px(int camera) const { return mounted(camera).model.height_px; }
+
+    /// Cameras that see `ray` of the view. A plane's camera is given even outside its picture.
+    void See(const Eigen::Vector3d& ray, Sights& sights) const;
+
+    /// Pixel of `camera` for a ray of the view, also outside the picture; false if it has none.
+    [[nodiscard]] bool Project(int camera, const Eigen::Vector3d& ray, Eigen::Vector2d& pixel) const;
+
+ private:
+    struct MountedCamera {
+        CameraModel model;
+        Eigen::Matrix3d R_camera_unit;
+        Eigen::Vector3d position_m;
+    };
+
+    [[nodiscard]] const MountedCamera& mounted(int camera) const {
+        return cameras_[static_cast<std::size_t>(camera)];
+    }
+
+    Projection view_;
+    AlignmentSurface surface_;
+    int camera_count_ = 0;
+    std::array<MountedCamera, kMaxCameras> cameras_{};
+};
+
+}  // namespace hitchview::algo
