@@ -137,6 +137,12 @@ int View(const ViewOptions& options, LcmSubscriber& subscriber) try {
 
 int ViewVerb(const ViewOptions& options) {
     if (const auto checked = Check(options); !checked) return Fail(kWrongUse, checked.error());
+    if (const auto url = drivers::CheckLcmUrl(options.url); !url) {
+        return Fail(kWrongUse, url.error());
+    }
+    if (const auto name = drivers::CheckLcmChannel("channel", options.channel); !name) {
+        return Fail(kWrongUse, name.error());
+    }
     const auto subscriber = LcmSubscriber::Create({.url = options.url, .channel = options.channel});
     if (!subscriber) return Fail(kMachineFailed, subscriber.error());
     return View(options, *subscriber.value());

@@ -9,13 +9,14 @@ namespace hitchview::app {
 struct ViewOptions {
     std::string url = "udpm://239.255.76.67:7667?ttl=0";
     std::string channel = "PANORAMA";
-    std::chrono::milliseconds stale_after{500};  ///< older pictures are not shown. [50, 10000]
-    std::string
-        save;  ///< write the newest picture here (.png, .jpg), open no window; empty: a window
-    std::optional<int>
-        frames;  ///< end after so many pictures. [1, 1000000]; with save: 1 unless given
-    std::chrono::milliseconds wait{
-        10'000};  ///< longest time without a picture, when save or frames is given. [100, 600000]
+    /// Older pictures are not shown. [50, 10000]
+    std::chrono::milliseconds stale_after{500};
+    /// Write the newest picture to this file (.png, .jpg) instead of opening a window.
+    std::string save = {};
+    /// End after so many pictures. [1, 1000000]; with `save`: 1 unless given.
+    std::optional<int> frames = {};
+    /// Longest time without a picture, when `save` or `frames` is given. [100, 600000]
+    std::chrono::milliseconds wait{10'000};
 };
 
 /// The display unit's program: shows the newest panorama until the window is closed or Esc or 'q'

@@ -21,7 +21,8 @@ struct LcmPublisherOptions {
 };
 
 /// Panorama as bot_core.image_t, status and hitch angle as hitchview types, over LCM. Messages are
-/// encoded into one buffer taken at construction; publishing allocates nothing.
+/// encoded into one buffer taken at construction. With the first message liblcm makes its lock;
+/// publishing allocates nothing after that.
 class LcmPublisher final : public hal::Publisher {
  public:
     /// `clock` must outlive the publisher.
