@@ -111,7 +111,7 @@ struct CanConfig {
 };
 
 struct PublishConfig {
-    std::string url = "udpm://239.255.76.67:7667?ttl=1";
+    std::string url = "udpm://239.255.76.67:7667?ttl=0";
     std::string panorama_channel = "PANORAMA";  ///< LCM channel, at most 63 characters
     std::string status_channel = "PANORAMA_STATUS";
     std::string hitch_angle_channel = "HITCH_ANGLE";

@@ -143,6 +143,7 @@ std::string ExactText(double number);
 template <typename E, std::size_t kCount>
 void YamlValue::Read(const std::array<Choice<E>, kCount>& choices, E& out) const {
     std::vector<std::string_view> names;
+    names.reserve(kCount);
     for (const auto& choice : choices) names.push_back(choice.name);
     if (const auto index = Index(names)) out = choices[*index].value;
 }

@@ -190,6 +190,13 @@ TEST_F(RigCalibrationTest, BadFilesAreRefusedWithFileLineKeyValueAndRange) {
     for (const auto& [text, error] : table) EXPECT_EQ(ErrorOf(text), error) << text;
 }
 
+TEST_F(RigCalibrationTest, TheExampleInTheConventionsLoads) {
+    const std::string page = test_support::FileText(HITCHVIEW_SOURCE_DIR "/docs/conventions.md");
+    const std::string fence = "```yaml\n";
+    const auto start = page.find(fence) + fence.size();
+    EXPECT_EQ(ErrorOf(page.substr(start, page.find("```", start) - start)), "");
+}
+
 TEST_F(RigCalibrationTest, ARigNeedsEachOfItsCamerasOnTheSameUnit) {
     app::RigConfig rig;
     rig.calibration = folder_.Write("calib.yaml", OneCamera(kLens + kPose));
