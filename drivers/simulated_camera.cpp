@@ -1,0 +1,37 @@
+#include "drivers/simulated_camera.hpp"
+
+#include <optional>
+#include <thread>
+
+namespace hitchview::drivers {
+namespace {
+
+constexpr std::chrono::milliseconds kRetry{1};
+
+/// A free slot, within `timeout`.
+std::optional<hal::FramePool::Slot> WaitSlot(hal::FramePool& pool,
+                                             std::chrono::milliseconds timeout) {
+    for (auto left = timeout;; left -= kRetry) {
+        if (auto maybe_slot = pool.Take()) return maybe_slot;
+        if (left <= std::chrono::milliseconds::zero()) return std::nullopt;
+        std::this_thread::sleep_for(kRetry);
+    }
+}
+
+}  // namespace
+
+SimulatedCamera::SimulatedCamera(const SimulatedRig& rig, int camera_index, hal::Instant start,
+                                 int pool_frames)
+    : rig_(rig), camera_index_(camera_index), start_(start), pool_(rig.format(), pool_frames) {}
+
+hal::Result<hal::FrameLease> SimulatedCamera::DoWaitFrame(std::chrono::milliseconds timeout) {
+    if (next_frame_ >= rig_.options().frames) return hal::Error::kEndOfStream;
+    const auto maybe_slot = WaitSlot(pool_, timeout);
+    if (!maybe_slot) return hal::Error::kTimeout;
+    const int frame = next_frame_++;
+    rig_.Render(camera_index_, frame, workspace_, maybe_slot->bytes);
+    return pool_.Lease(*maybe_slot, {.sequence = static_cast<std::uint32_t>(frame),
+                                     .captured_at = start_ + FrameTime(rig_.options(), frame)});
+}
+
+}  // namespace hitchview::drivers

@@ -1,0 +1,77 @@
+#include "drivers/simulated_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace hitchview::drivers {
+namespace {
+
+/// The road of a slalom is a function of x: its heading stays well below a right angle.
+constexpr double kMaxSlalomHeading_rad = 1.05;
+
+struct Bound {
+    const char* key;
+    double value;
+    double lowest;
+    double highest;
+};
+
+std::string OutOfRange(const Bound& bound) {
+    std::ostringstream text;
+    text << "simulation: " << bound.key << " is " << bound.value << ", allowed is " << bound.lowest
+         << " to " << bound.highest;
+    return text.str();
+}
+
+std::vector<Bound> ShakeBounds(const ShakeOptions& shake) {
+    return {{"shake.roll_pitch_rad", shake.roll_pitch_rad, 0, 0.1},
+            {"shake.yaw_rad", shake.yaw_rad, 0, 0.1},
+            {"shake.translation_m", shake.translation_m, 0, 0.2},
+            {"shake.lowest_hz", shake.lowest_hz, 0.05, 100},
+            {"shake.highest_hz", shake.highest_hz, shake.lowest_hz, 100},
+            {"shake.scale", shake.scale, 0, 10}};
+}
+
+double SlalomHeading_rad(const SimulationOptions& o) {
+    if (o.profile != DriveProfile::kSlalom) return 0;
+    return o.curvature_per_m * o.speed_mps * o.slalom_period_s / (2 * std::numbers::pi);
+}
+
+std::vector<Bound> Bounds(const SimulationOptions& o) {
+    std::vector<Bound> bounds{
+        {"frames", static_cast<double>(o.frames), 1, 36000},
+        {"period_ns", static_cast<double>(o.period.count()), 1e6, 1e9},
+        {"width_px", static_cast<double>(o.width_px), 32, 4096},
+        {"height_px", static_cast<double>(o.height_px), 16, static_cast<double>(o.width_px)},
+        {"width_px modulo 2", static_cast<double>(o.width_px % 2), 0, 0},
+        {"height_px modulo 2", static_cast<double>(o.height_px % 2), 0, 0},
+        {"speed_mps", o.speed_mps, 0, 30},
+        {"curvature_per_m", o.curvature_per_m, 0.001, 0.5},
+        {"slalom_period_s", o.slalom_period_s, 0.5, 120},
+        {"slalom heading_rad", SlalomHeading_rad(o), 0, kMaxSlalomHeading_rad},
+        {"gain_spread", o.gain_spread, 0, 0.5},
+        {"noise_sigma", o.noise_sigma, 0, 50},
+        {"render_threads", static_cast<double>(o.render_threads), 1, 64}};
+    for (const ShakeOptions& shake : o.shake) {
+        const std::vector<Bound> more = ShakeBounds(shake);
+        bounds.insert(bounds.end(), more.begin(), more.end());
+    }
+    return bounds;
+}
+
+}  // namespace
+
+hal::Checked<hal::Done> CheckOptions(const SimulationOptions& options) {
+    const std::vector<Bound> bounds = Bounds(options);
+    const auto bad = std::find_if(bounds.begin(), bounds.end(), [](const Bound& bound) {
+        return !(bound.value >= bound.lowest && bound.value <= bound.highest);  // catches NaN too
+    });
+    if (bad != bounds.end()) return OutOfRange(*bad);
+    return hal::Done{};
+}
+
+}  // namespace hitchview::drivers

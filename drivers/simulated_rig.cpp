@@ -1,0 +1,170 @@
+#include "drivers/simulated_rig.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "drivers/simulated_noise.hpp"
+
+namespace hitchview::drivers {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kHalfView_rad = 60 * kDegree;
+constexpr double kPitchDown_rad = 5 * kDegree;
+constexpr double kMountHeight_m = 1.7 - VehicleDimensions::kHitchHeight;
+constexpr double kSide_m = 0.72;
+constexpr double kFromHitch_m = 0.9;  // left_front to left: 1.8 m when the vehicle is straight
+constexpr double kSurfaceTolerance = 1e-3;  // of the distance: rays are cast in single precision
+
+/// Mount and direction of one camera in the frame of its unit; yaw positive to the left.
+struct Mount {
+    std::string_view name;
+    RigUnit unit;
+    double x_m, y_m, yaw_rad;
+};
+
+constexpr double kNose_m = VehicleDimensions::kFront - 0.05;
+constexpr double kTail_m = -VehicleDimensions::kRear + 0.05;
+
+constexpr std::array<Mount, SimulatedRig::kCameras> kMounts{{
+    {"front", RigUnit::kTractor, kNose_m, 0, 0},
+    {"left_front", RigUnit::kTractor, kFromHitch_m, kSide_m, 70 * kDegree},
+    {"right_front", RigUnit::kTractor, kFromHitch_m, -kSide_m, -70 * kDegree},
+    {"left", RigUnit::kTrailer, -kFromHitch_m, kSide_m, 90 * kDegree},
+    {"left_rear", RigUnit::kTrailer, kTail_m, kSide_m, 135 * kDegree},
+    {"rear", RigUnit::kTrailer, kTail_m, 0, 180 * kDegree},
+    {"right_rear", RigUnit::kTrailer, kTail_m, -kSide_m, -135 * kDegree},
+    {"right", RigUnit::kTrailer, -kFromHitch_m, -kSide_m, -90 * kDegree},
+}};
+
+algo::CameraModel Lens(int width_px, int height_px) {
+    algo::CameraModel lens{.kind = algo::CameraModel::Kind::kKannalaBrandt4,
+                           .width_px = width_px,
+                           .height_px = height_px,
+                           .fx_px = 1,
+                           .fy_px = 1,
+                           .cx_px = 0,
+                           .cy_px = 0,
+                           .distortion = {-0.018, 0.0035, -0.0011, 0.0001},
+                           .max_theta_rad = 1.56};
+    const Vector3d outermost{std::sin(kHalfView_rad), 0, std::cos(kHalfView_rad)};
+    lens.fx_px = lens.fy_px = 0.5 * width_px / lens.Project(outermost)->x();
+    lens.cx_px = 0.5 * (width_px - 1);
+    lens.cy_px = 0.5 * (height_px - 1);
+    return lens;
+}
+
+Isometry3d MountPose(const Mount& mount) {
+    Eigen::Matrix3d R_level_camera;  // x right, y down, z forward to x forward, y left, z up
+    R_level_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    Isometry3d T = Isometry3d::Identity();
+    T.translate(Vector3d{mount.x_m, mount.y_m, kMountHeight_m});
+    T.rotate(Eigen::AngleAxisd(mount.yaw_rad, Vector3d::UnitZ()) *
+             Eigen::AngleAxisd(kPitchDown_rad, Vector3d::UnitY()));
+    T.rotate(R_level_camera);
+    return T;
+}
+
+bool InImage(const algo::CameraModel& lens, const Vector2d& pixel) {
+    return pixel.x() >= -0.5 && pixel.x() < lens.width_px - 0.5 && pixel.y() >= -0.5 &&
+           pixel.y() < lens.height_px - 0.5;
+}
+
+}  // namespace
+
+SimulatedRigGeometryTable SimulatedRigGeometry(int width_px, int height_px) {
+    HV_EXPECT(width_px >= height_px && height_px > 0);
+    const algo::CameraModel lens = Lens(width_px, height_px);
+    SimulatedRigGeometryTable table;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        table[i] = {kMounts[i].name, kMounts[i].unit, {lens, MountPose(kMounts[i])}};
+    }
+    return table;
+}
+
+hal::Checked<std::unique_ptr<SimulatedRig>> SimulatedRig::Create(const SimulationOptions& options) {
+    if (const auto checked = CheckOptions(options); !checked.ok()) return checked.error();
+    return std::unique_ptr<SimulatedRig>(new SimulatedRig(options));
+}
+
+SimulatedRig::SimulatedRig(const SimulationOptions& options)
+    : options_(options),
+      cameras_(SimulatedRigGeometry(options.width_px, options.height_px)),
+      motion_(options),
+      world_(options),
+      renderer_(world_, cameras_[0].geometry.model) {}
+
+const SimulatedCameraGeometry& SimulatedRig::camera(int camera_index) const {
+    HV_EXPECT(camera_index >= 0 && camera_index < kCameras);
+    return cameras_[static_cast<std::size_t>(camera_index)];
+}
+
+hal::FrameFormat SimulatedRig::format() const {
+    return {options_.width_px, options_.height_px, hal::PixelFormat::kNv12, hal::Range::kFull};
+}
+
+double SimulatedRig::GainOf(int camera_index) const {
+    const auto camera = static_cast<std::uint32_t>(camera_index);
+    return 1 + options_.gain_spread * (2 * Unit01(Hash(options_.seed, 300, camera)) - 1);
+}
+
+void SimulatedRig::Render(int camera_index, int frame, Renderer::Workspace& workspace,
+                          std::span<std::uint8_t> out_nv12) const {
+    const std::uint32_t noise_seed =
+        Hash(Hash(options_.seed, 400), static_cast<std::uint32_t>(camera_index),
+             static_cast<std::uint32_t>(frame));
+    renderer_.Render(CameraPoseAt(camera_index, frame),
+                     {static_cast<float>(GainOf(camera_index)),
+                      static_cast<float>(options_.noise_sigma), noise_seed},
+                     options_.render_threads, workspace, out_nv12);
+}
+
+Isometry3d SimulatedRig::PoseAt(int frame, RigUnit unit, Shaking shaking) const {
+    HV_EXPECT(frame >= 0 && frame < options_.frames);
+    return motion_.PoseAt(FrameTime(options_, frame), unit, shaking);
+}
+
+Isometry3d SimulatedRig::CameraPoseAt(int camera_index, int frame) const {
+    const SimulatedCameraGeometry& at = camera(camera_index);
+    return PoseAt(frame, at.unit) * at.geometry.T_unit_camera;
+}
+
+double SimulatedRig::HitchAngleAt(int frame) const {
+    return motion_.HitchAngleAt(FrameTime(options_, frame));
+}
+
+double SimulatedRig::HitchAngleAt(hal::Instant since_start) const {
+    return motion_.HitchAngleAt(since_start);
+}
+
+std::optional<SimulatedRig::SeenPoint> SimulatedRig::WorldPointAt(int camera_index, int frame,
+                                                                  const Vector2d& pixel) const {
+    const auto ray_camera = camera(camera_index).geometry.model.Unproject(pixel);
+    if (!ray_camera) return std::nullopt;
+    const Isometry3d T_world_camera = CameraPoseAt(camera_index, frame);
+    const Vector3d ray_world = T_world_camera.linear() * *ray_camera;
+    const double distance_m =
+        std::min(world_.DistanceTo(T_world_camera.translation(), ray_world), kFar_m);
+    return SeenPoint{T_world_camera.translation() + distance_m * ray_world, distance_m};
+}
+
+std::optional<Vector2d> SimulatedRig::ProjectWorldPoint(int camera_index, int frame,
+                                                        const Vector3d& p_world_m,
+                                                        Occlusion occlusion) const {
+    const algo::CameraModel& lens = camera(camera_index).geometry.model;
+    const Isometry3d T_world_camera = CameraPoseAt(camera_index, frame);
+    const auto pixel = lens.Project(T_world_camera.inverse() * p_world_m);
+    if (!pixel || !InImage(lens, *pixel)) return std::nullopt;
+    if (occlusion == Occlusion::kIgnored) return pixel;
+    const Vector3d to_point = p_world_m - T_world_camera.translation();
+    const double first_m = world_.DistanceTo(T_world_camera.translation(), to_point.normalized());
+    if (first_m < to_point.norm() * (1 - kSurfaceTolerance)) return std::nullopt;
+    return pixel;
+}
+
+}  // namespace hitchview::drivers

@@ -1,0 +1,115 @@
+#include "drivers/simulated_world.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+#include "drivers/simulated_noise.hpp"
+#include "drivers/simulated_placement.hpp"
+
+namespace hitchview::drivers {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr float kGroundEnd_m = 2500;  // the plane beyond is less than a pixel high
+constexpr float kHazeHalf_m = 900;    // distance at which the air hides half
+
+double Route_m(const SimulationOptions& o) {
+    return o.speed_mps * std::chrono::duration<double>(FrameTime(o, o.frames)).count();
+}
+
+/// Textures about as fine as the pixels need: smaller images are made sooner.
+int PaintTexels(const SimulationOptions& o) {
+    return o.width_px > 800 ? 512 : o.width_px > 400 ? 256 : 128;
+}
+
+int BackdropTexels(const SimulationOptions& o) {
+    return static_cast<int>(std::bit_ceil(static_cast<unsigned>(3 * o.width_px)));
+}
+
+Colour ThroughAir(const Colour& colour, float distance_m) {
+    return Mix(colour, kHaze, distance_m / (distance_m + kHazeHalf_m));
+}
+
+bool Fills(const VisibleSolid& solid, float smallest_rad) {
+    const float radius_m = solid.half_m.norm();
+    return radius_m > smallest_rad * solid.nearest_m;
+}
+
+}  // namespace
+
+World::World(const SimulationOptions& options)
+    : palette_(Hash(options.seed, 1), PaintTexels(options)),
+      road_(options),
+      ground_(palette_, road_, Hash(options.seed, 2)),
+      backdrop_(Hash(options.seed, 3), BackdropTexels(options)),
+      solids_(PlaceSolids(road_, Route_m(options), Hash(options.seed, 4))) {}
+
+void World::Look(const Vector3d& eye_world, float smallest_rad, Surroundings& out) const {
+    out.eye_world = eye_world;
+    out.solids.clear();
+    out.solids.reserve(solids_.size());
+    for (std::size_t i = 0; i < solids_.size(); ++i) {
+        const VisibleSolid solid(solids_[i], static_cast<std::uint32_t>(i), eye_world);
+        if (Fills(solid, smallest_rad)) out.solids.push_back(solid);
+    }
+    std::sort(out.solids.begin(), out.solids.end(), [](const auto& a, const auto& b) {
+        return a.nearest_m != b.nearest_m ? a.nearest_m < b.nearest_m : a.index < b.index;
+    });
+}
+
+Hit World::Cast(const Surroundings& around, std::span<const std::uint32_t> nearby,
+                const Vector3f& direction) {
+    Hit hit;
+    const float ground_m = -static_cast<float>(around.eye_world.z()) / direction.z();
+    if (direction.z() < 0 && ground_m < kGroundEnd_m) hit = {ground_m, Hit::kGround, 0};
+    for (const std::uint32_t i : nearby) {
+        const VisibleSolid& solid = around.solids[i];
+        if (solid.nearest_m > hit.distance_m) break;
+        const Entry entry = Intersect(solid, direction);
+        if (entry.distance_m < hit.distance_m) {
+            hit = {entry.distance_m, static_cast<std::int32_t>(i), entry.face};
+        }
+    }
+    return hit;
+}
+
+Colour World::ColourOf(const Surroundings& around, std::span<const std::uint32_t> nearby,
+                       const Vector3f& direction, const Hit& hit, float pixel_rad) const {
+    if (hit.what == Hit::kSky) return backdrop_.ColourOf(direction, pixel_rad);
+    if (hit.what == Hit::kGround) {
+        return GroundColour(around, nearby, direction, hit.distance_m, pixel_rad);
+    }
+    const VisibleSolid& visible = around.solids[static_cast<std::size_t>(hit.what)];
+    const Colour colour = ShadeSolid(palette_, solids_[visible.index], visible, direction,
+                                     {hit.distance_m, hit.face}, pixel_rad);
+    return ThroughAir(colour, hit.distance_m);
+}
+
+Colour World::GroundColour(const Surroundings& around, std::span<const std::uint32_t> nearby,
+                           const Vector3f& direction, float distance_m, float pixel_rad) const {
+    const Vector3f p_m = distance_m * direction;
+    const float across_m = distance_m * pixel_rad;
+    const Colour colour =
+        ground_.ColourOf({around.eye_world.head<2>() + p_m.head<2>().cast<double>(),
+                          direction.head<2>().normalized(), across_m, across_m / -direction.z()});
+    float shadow = 0;
+    for (const std::uint32_t i : nearby) {
+        const VisibleSolid& solid = around.solids[i];
+        if (solid.nearest_m > distance_m) break;
+        if (solid.shape == Shape::kShadow) shadow = std::max(shadow, ShadowAt(solid, p_m));
+    }
+    return ThroughAir(colour * (1 - shadow), distance_m);
+}
+
+double World::DistanceTo(const Vector3d& eye_world, const Vector3d& direction) const {
+    Surroundings around;
+    Look(eye_world, 0, around);
+    std::vector<std::uint32_t> all(around.solids.size());
+    std::iota(all.begin(), all.end(), 0U);
+    return Cast(around, all, direction.cast<float>()).distance_m;
+}
+
+}  // namespace hitchview::drivers
