@@ -1,0 +1,60 @@
+#include "app/eval_verb.hpp"
+
+#include <cstdio>
+#include <fstream>
+
+namespace hitchview::app {
+namespace {
+
+using nlohmann::json;
+
+enum ExitCode { kDone = 0, kWrongUse = 2, kMachineFailed = 3 };
+
+int Fail(ExitCode code, const std::string& reason) {
+    std::fprintf(stderr, "hitchview eval: %s\n", reason.c_str());
+    return code;
+}
+
+void ShowProgress(int frames) {
+    constexpr int kEvery = 25;
+    if (frames % kEvery == 0) std::fprintf(stderr, "\r%d frames", frames);
+}
+
+void PrintRow(const std::string& part, const std::string& figure, const json& value) {
+    const std::string text = value.is_null()           ? "-"
+                             : value.is_number_float() ? std::to_string(value.get<double>())
+                                                       : value.dump();
+    std::printf("%-14s %-22s %12s\n", part.c_str(), figure.c_str(), text.c_str());
+}
+
+void PrintTable(const json& report) {
+    PrintRow("", "frames", report["frames"]);
+    for (const char* group : {"units", "seams"}) {
+        for (const auto& [part, figures] : report[group].items()) {
+            for (const auto& [figure, value] : figures.items()) {
+                PrintRow(group == std::string("seams") ? "seam " + part : part, figure, value);
+            }
+        }
+    }
+    for (const auto& [figure, value] : report["panorama"].items()) {
+        PrintRow("panorama", figure, value);
+    }
+}
+
+}  // namespace
+
+int EvalVerb(const EvalOptions& options) {
+    const auto report = Evaluate({.units = options.units,
+                                  .panorama = options.panorama,
+                                  .step = options.step,
+                                  .progress = ShowProgress});
+    std::fputc('\n', stderr);
+    if (!report) return Fail(kWrongUse, report.error());
+    PrintTable(report.value());
+    if (options.json.empty()) return kDone;
+    std::ofstream file(options.json);
+    file << report.value().dump(2) << '\n';
+    return file.flush() ? kDone : Fail(kMachineFailed, options.json + ": cannot be written");
+}
+
+}  // namespace hitchview::app
