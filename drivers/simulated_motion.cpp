@@ -110,8 +110,8 @@ Isometry3d Shake::At(double time_s) const {
 
 Motion::Motion(const SimulationOptions& options)
     : options_(options),
-      shakes_{Shake(options.shake[0], Hash(options.seed, 101)),
-              Shake(options.shake[1], Hash(options.seed, 202))} {
+      shakes_{{Shake(options.shake[algo::Unit::kTractor], Hash(options.seed, 101)),
+               Shake(options.shake[algo::Unit::kTrailer], Hash(options.seed, 202))}} {
     const hal::Instant end = FrameTime(options, options.frames) + std::chrono::seconds(1);
     const auto steps = static_cast<std::size_t>(end / kGrid) + 1;
     states_.reserve(steps);
@@ -157,16 +157,16 @@ Motion::State Motion::StateAt(hal::Instant since_start) const {
     return Step(states_[i], Seconds(since_start % kGrid));
 }
 
-Isometry3d Motion::PoseAt(hal::Instant since_start, RigUnit unit, Shaking shaking) const {
+Isometry3d Motion::PoseAt(hal::Instant since_start, algo::Unit unit, Shaking shaking) const {
     const State state = StateAt(since_start);
     const double tractor_yaw = HeadingAt(options_, state.travelled_m);
-    const bool tractor = unit == RigUnit::kTractor;
+    const bool tractor = unit == algo::Unit::kTractor;
     const Isometry3d T_world_unit =
         Planar(state.x_m - VehicleDimensions::kTractorAxle * std::cos(tractor_yaw),
                state.y_m - VehicleDimensions::kTractorAxle * std::sin(tractor_yaw),
                tractor ? tractor_yaw : tractor_yaw + state.hitch_rad);
     if (shaking == Shaking::kWithout) return T_world_unit;
-    return Displaced(T_world_unit, shakes_[static_cast<std::size_t>(unit)].At(Seconds(since_start)),
+    return Displaced(T_world_unit, shakes_[unit].At(Seconds(since_start)),
                      tractor ? VehicleDimensions::kTractorAxle : -VehicleDimensions::kTrailerAxle);
 }
 

@@ -58,7 +58,7 @@ class Motion {
 
     /// T_world_unit; origin in the hitch point. `since_start` from 0 to one second past the last
     /// frame.
-    [[nodiscard]] Eigen::Isometry3d PoseAt(hal::Instant since_start, RigUnit unit,
+    [[nodiscard]] Eigen::Isometry3d PoseAt(hal::Instant since_start, algo::Unit unit,
                                            Shaking shaking) const;
     /// Yaw of the trailer relative to the tractor, positive to the left, without shaking.
     [[nodiscard]] double HitchAngleAt(hal::Instant since_start) const;
@@ -72,7 +72,7 @@ class Motion {
     [[nodiscard]] State StateAt(hal::Instant since_start) const;
 
     SimulationOptions options_;
-    std::array<Shake, 2> shakes_;
+    algo::PerUnit<Shake> shakes_;
     std::vector<State> states_;  // every kGrid
 };
 

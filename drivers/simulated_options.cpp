@@ -56,7 +56,7 @@ std::vector<Bound> Bounds(const SimulationOptions& o) {
         {"gain_spread", o.gain_spread, 0, 0.5},
         {"noise_sigma", o.noise_sigma, 0, 50},
         {"render_threads", static_cast<double>(o.render_threads), 1, 64}};
-    for (const ShakeOptions& shake : o.shake) {
+    for (const ShakeOptions& shake : o.shake.of) {
         const std::vector<Bound> more = ShakeBounds(shake);
         bounds.insert(bounds.end(), more.begin(), more.end());
     }

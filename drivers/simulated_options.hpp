@@ -1,16 +1,13 @@
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 
+#include "algo/unit.hpp"
 #include "hal/frame.hpp"
 #include "hal/result.hpp"
 
 namespace hitchview::drivers {
-
-/// The two rigid bodies of the simulated vehicle; the values index arrays.
-enum class RigUnit { kTractor = 0, kTrailer = 1 };
 
 /// What the driver does. The road follows the drive.
 enum class DriveProfile {
@@ -42,9 +39,8 @@ struct SimulationOptions {
     DriveProfile profile = DriveProfile::kSlalom;
     double curvature_per_m = 0.08;  ///< peak of the slalom, constant in a turn
     double slalom_period_s = 6;
-    std::array<ShakeOptions, 2> shake{
-        ///< by RigUnit
-        ShakeOptions{}, ShakeOptions{.translation_m = 0.016, .lowest_hz = 4, .highest_hz = 12}};
+    algo::PerUnit<ShakeOptions> shake{
+        {ShakeOptions{}, ShakeOptions{.translation_m = 0.016, .lowest_hz = 4, .highest_hz = 12}}};
     double gain_spread = 0.04;  ///< exposure gains of the cameras lie in 1 +- this
     double noise_sigma = 1.0;   ///< grey levels, of each pixel alone
     int render_threads = 2;     ///< threads that share one image; 1: the caller's alone

@@ -24,7 +24,7 @@ constexpr double kSurfaceTolerance = 1e-3;  // of the distance: rays are cast in
 /// Mount and direction of one camera in the frame of its unit; yaw positive to the left.
 struct Mount {
     std::string_view name;
-    RigUnit unit;
+    algo::Unit unit;
     double x_m, y_m, yaw_rad;
 };
 
@@ -32,14 +32,14 @@ constexpr double kNose_m = VehicleDimensions::kFront - 0.05;
 constexpr double kTail_m = -VehicleDimensions::kRear + 0.05;
 
 constexpr std::array<Mount, SimulatedRig::kCameras> kMounts{{
-    {"front", RigUnit::kTractor, kNose_m, 0, 0},
-    {"left_front", RigUnit::kTractor, kFromHitch_m, kSide_m, 70 * kDegree},
-    {"right_front", RigUnit::kTractor, kFromHitch_m, -kSide_m, -70 * kDegree},
-    {"left", RigUnit::kTrailer, -kFromHitch_m, kSide_m, 90 * kDegree},
-    {"left_rear", RigUnit::kTrailer, kTail_m, kSide_m, 135 * kDegree},
-    {"rear", RigUnit::kTrailer, kTail_m, 0, 180 * kDegree},
-    {"right_rear", RigUnit::kTrailer, kTail_m, -kSide_m, -135 * kDegree},
-    {"right", RigUnit::kTrailer, -kFromHitch_m, -kSide_m, -90 * kDegree},
+    {"front", algo::Unit::kTractor, kNose_m, 0, 0},
+    {"left_front", algo::Unit::kTractor, kFromHitch_m, kSide_m, 70 * kDegree},
+    {"right_front", algo::Unit::kTractor, kFromHitch_m, -kSide_m, -70 * kDegree},
+    {"left", algo::Unit::kTrailer, -kFromHitch_m, kSide_m, 90 * kDegree},
+    {"left_rear", algo::Unit::kTrailer, kTail_m, kSide_m, 135 * kDegree},
+    {"rear", algo::Unit::kTrailer, kTail_m, 0, 180 * kDegree},
+    {"right_rear", algo::Unit::kTrailer, kTail_m, -kSide_m, -135 * kDegree},
+    {"right", algo::Unit::kTrailer, -kFromHitch_m, -kSide_m, -90 * kDegree},
 }};
 
 algo::CameraModel Lens(int width_px, int height_px) {
@@ -124,7 +124,7 @@ void SimulatedRig::Render(int camera_index, int frame, Renderer::Workspace& work
                      options_.render_threads, workspace, out_nv12);
 }
 
-Isometry3d SimulatedRig::PoseAt(int frame, RigUnit unit, Shaking shaking) const {
+Isometry3d SimulatedRig::PoseAt(int frame, algo::Unit unit, Shaking shaking) const {
     HV_EXPECT(frame >= 0 && frame < options_.frames);
     return motion_.PoseAt(FrameTime(options_, frame), unit, shaking);
 }

@@ -15,7 +15,7 @@ namespace hitchview::drivers {
 
 struct SimulatedCameraGeometry {
     std::string_view name;
-    RigUnit unit = RigUnit::kTractor;
+    algo::Unit unit = algo::Unit::kTractor;
     algo::CameraGeometry geometry;
 };
 
@@ -48,7 +48,7 @@ class SimulatedRig {
                 std::span<std::uint8_t> out_nv12) const;
 
     /// T_world_unit; origin in the hitch point, world frame as in HeadingAt.
-    [[nodiscard]] Eigen::Isometry3d PoseAt(int frame, RigUnit unit,
+    [[nodiscard]] Eigen::Isometry3d PoseAt(int frame, algo::Unit unit,
                                            Shaking shaking = Shaking::kWith) const;
     /// T_world_camera, with shaking.
     [[nodiscard]] Eigen::Isometry3d CameraPoseAt(int camera_index, int frame) const;

@@ -35,11 +35,13 @@ class Texture {
     /// `width`, `height`: powers of two, in texels.
     Texture(int width, int height, const Painter& paint);
 
-    /// Trilinear. `footprint`: width of the area seen, as a share of the texture's width.
+    /// Filtered over the area seen. `footprint`: its width, as a share of the texture's width.
     [[nodiscard]] Colour Sample(float u, float v, float footprint) const;
 
  private:
     struct Level {
+        [[nodiscard]] Colour Sample(float u, float v) const;  // bilinear
+
         int width = 0, height = 0;
         std::vector<std::uint32_t> texels;  // y, u + 128, v + 128 in the three low bytes
     };

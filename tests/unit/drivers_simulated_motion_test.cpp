@@ -46,8 +46,8 @@ TEST(SimulatedMotionTest, ATurnToTheRightMirrorsATurnToTheLeft) {
 TEST(SimulatedMotionTest, TheHitchAngleIsTheYawBetweenTheUnits) {
     const Motion motion(SimulationOptions{});
     for (const milliseconds t : {milliseconds(0), milliseconds(1234), milliseconds(4321)}) {
-        const Isometry3d tractor = motion.PoseAt(t, RigUnit::kTractor, Shaking::kWithout);
-        const Isometry3d trailer = motion.PoseAt(t, RigUnit::kTrailer, Shaking::kWithout);
+        const Isometry3d tractor = motion.PoseAt(t, algo::Unit::kTractor, Shaking::kWithout);
+        const Isometry3d trailer = motion.PoseAt(t, algo::Unit::kTrailer, Shaking::kWithout);
         EXPECT_NEAR(Yaw(tractor.inverse() * trailer), motion.HitchAngleAt(t), 1e-12);
         EXPECT_LT((tractor.translation() - trailer.translation()).norm(), 1e-12);
     }
@@ -58,7 +58,7 @@ TEST(SimulatedMotionTest, TheTrailerAxleDoesNotSlipSideways) {
     const Vector3d axle{-VehicleDimensions::kTrailerAxle, 0, 0};
     for (int t = 500; t < 9000; t += 700) {
         const auto pose = [&](int ms) {
-            return motion.PoseAt(milliseconds(ms), RigUnit::kTrailer, Shaking::kWithout);
+            return motion.PoseAt(milliseconds(ms), algo::Unit::kTrailer, Shaking::kWithout);
         };
         const Vector3d moved = pose(t + 1) * axle - pose(t - 1) * axle;
         EXPECT_NEAR((pose(t).linear().transpose() * moved).y(), 0, 1e-5) << t;
@@ -89,25 +89,27 @@ TEST(SimulatedMotionTest, ShakingHasTheAmplitudeAskedFor) {
 TEST(SimulatedMotionTest, TheUnitsShakeIndependently) {
     SimulationOptions options;
     const Motion both(options);
-    options.shake[0].scale = 0;
+    options.shake[algo::Unit::kTractor].scale = 0;
     const Motion trailer_only(options);
     double correlation = 0;
     double tractor_power = 0;
     double trailer_power = 0;
     for (int t = 0; t < 10000; t += 7) {
-        const auto pitch = [&](RigUnit unit) {
+        const auto pitch = [&](algo::Unit unit) {
             return both.PoseAt(milliseconds(t), unit, Shaking::kWith).linear()(2, 0);
         };
-        const double tractor = pitch(RigUnit::kTractor);
-        const double trailer = pitch(RigUnit::kTrailer);
+        const double tractor = pitch(algo::Unit::kTractor);
+        const double trailer = pitch(algo::Unit::kTrailer);
         correlation += tractor * trailer;
         tractor_power += tractor * tractor;
         trailer_power += trailer * trailer;
-        const auto still = trailer_only.PoseAt(milliseconds(t), RigUnit::kTractor, Shaking::kWith);
+        const auto still =
+            trailer_only.PoseAt(milliseconds(t), algo::Unit::kTractor, Shaking::kWith);
         EXPECT_TRUE(still.isApprox(
-            both.PoseAt(milliseconds(t), RigUnit::kTractor, Shaking::kWithout), 1e-12));
-        EXPECT_EQ(trailer_only.PoseAt(milliseconds(t), RigUnit::kTrailer, Shaking::kWith).matrix(),
-                  both.PoseAt(milliseconds(t), RigUnit::kTrailer, Shaking::kWith).matrix());
+            both.PoseAt(milliseconds(t), algo::Unit::kTractor, Shaking::kWithout), 1e-12));
+        EXPECT_EQ(
+            trailer_only.PoseAt(milliseconds(t), algo::Unit::kTrailer, Shaking::kWith).matrix(),
+            both.PoseAt(milliseconds(t), algo::Unit::kTrailer, Shaking::kWith).matrix());
     }
     EXPECT_LT(std::abs(correlation) / std::sqrt(tractor_power * trailer_power), 0.15);
 }
@@ -129,7 +131,8 @@ TEST(SimulationOptionsTest, AnOptionOutOfRangeIsNamed) {
               std::string::npos);
     EXPECT_NE(error([](auto& o) { o.height_px = 2000; }).find("1280"), std::string::npos);
     EXPECT_NE(error([](auto& o) { o.noise_sigma = NAN; }).find("noise_sigma"), std::string::npos);
-    EXPECT_NE(error([](auto& o) { o.shake[1].scale = -1; }).find("shake.scale"), std::string::npos);
+    EXPECT_NE(error([](auto& o) { o.shake[algo::Unit::kTrailer].scale = -1; }).find("shake.scale"),
+              std::string::npos);
     EXPECT_NE(error([](auto& o) { o.curvature_per_m = 0.4; }).find("slalom heading"),
               std::string::npos);
 }

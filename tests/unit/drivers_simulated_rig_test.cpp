@@ -52,7 +52,7 @@ double LumaAt(const SimulatedRig& rig, const Image& image, const Vector2d& pixel
 TEST(SimulatedRigGeometryTest, CamerasHaveTheNamesAndUnitsOfTheRig) {
     std::string names;
     for (const auto& camera : SimulatedRigGeometry(1280, 720)) {
-        names += std::string(camera.name) + (camera.unit == RigUnit::kTractor ? "A " : "B ");
+        names += std::string(camera.name) + (camera.unit == algo::Unit::kTractor ? "A " : "B ");
     }
     EXPECT_EQ(names, "frontA left_frontA right_frontA leftB left_rearB rearB right_rearB rightB ");
 }
@@ -208,7 +208,7 @@ TEST(SimulatedRigTest, AFarPointHasTheSameBrightnessInBothUnits) {
 TEST(SimulatedRigTest, ShakingOneUnitLeavesTheImagesOfTheOtherAlone) {
     SimulationOptions options = Small();
     const auto shaken = Rig(options);
-    options.shake[0].scale = 0;
+    options.shake[algo::Unit::kTractor].scale = 0;
     const auto tractor_held = Rig(options);
     EXPECT_NE(Rendered(*shaken, 0, 11), Rendered(*tractor_held, 0, 11));
     EXPECT_EQ(Rendered(*shaken, 4, 11), Rendered(*tractor_held, 4, 11));

@@ -19,7 +19,7 @@ TEST_P(SimulatedRoadTest, TheTractorStaysOnTheDrivenLane) {
     const Motion motion(options_);
     for (int ms = 0; ms < 9000; ms += 173) {
         const Eigen::Isometry3d tractor =
-            motion.PoseAt(std::chrono::milliseconds(ms), RigUnit::kTractor, Shaking::kWithout);
+            motion.PoseAt(std::chrono::milliseconds(ms), algo::Unit::kTractor, Shaking::kWithout);
         const Eigen::Vector3d axle =
             tractor * Eigen::Vector3d{VehicleDimensions::kTractorAxle, 0, 0};
         const RoadPoint point = road.FromWorld(axle.head<2>());
