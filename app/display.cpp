@@ -1,5 +1,6 @@
 #include "app/display.hpp"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "app/jpeg_picture.hpp"
@@ -15,16 +16,17 @@ const cv::Scalar kLettering{255, 255, 255};
 constexpr char kNoImage[] = "NO IMAGE";
 
 cv::Mat NoImage(cv::Size size_px) {
-    constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
-    constexpr int kThickness_px = 2;
+    constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+    constexpr double kShareOfSide = 0.5;
+    const cv::Size unit_px = cv::getTextSize(kNoImage, kFont, 1, 1, nullptr);
+    const double scale = kShareOfSide * std::min(double(size_px.width) / unit_px.width,
+                                                 double(size_px.height) / unit_px.height);
+    const int stroke_px = std::max(1, cvRound(2 * scale));
+    const cv::Size text_px = cv::getTextSize(kNoImage, kFont, scale, stroke_px, nullptr);
+    const cv::Point left_bottom_px{(size_px.width - text_px.width) / 2,
+                                   (size_px.height + text_px.height) / 2};
     cv::Mat shown(size_px, CV_8UC3, kBackground);
-    const cv::Size unit_px = cv::getTextSize(kNoImage, kFont, 1, kThickness_px, nullptr);
-    const double scale = 0.5 * std::min(double(size_px.width) / unit_px.width,
-                                        double(size_px.height) / unit_px.height);
-    const cv::Size text_px = cv::getTextSize(kNoImage, kFont, scale, kThickness_px, nullptr);
-    const cv::Point left_bottom{(size_px.width - text_px.width) / 2,
-                                (size_px.height + text_px.height) / 2};
-    cv::putText(shown, kNoImage, left_bottom, kFont, scale, kLettering, kThickness_px, cv::LINE_AA);
+    cv::putText(shown, kNoImage, left_bottom_px, kFont, scale, kLettering, stroke_px, cv::LINE_AA);
     return shown;
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 #include <thread>
 
@@ -59,6 +60,7 @@ TEST(LcmViewTest, TheNewestPictureIsSavedAsItWasSent) {
     cv::Mat expected;
     ASSERT_TRUE(DecodeJpeg(jpeg, {2048, 360}, expected));
     const cv::Mat saved = cv::imread(path);
+    std::remove(path.c_str());
     ASSERT_EQ(saved.size(), expected.size());
     EXPECT_EQ(cv::norm(saved, expected, cv::NORM_INF), 0);
 }

@@ -14,7 +14,7 @@ bool AreEqual(const cv::Mat& a, const cv::Mat& b) {
     return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
-const cv::Mat kPicture(40, 200, CV_8UC3, cv::Scalar(10, 200, 30));
+const cv::Mat kPicture(90, 512, CV_8UC3, cv::Scalar(10, 200, 30));
 
 class Sender {
  public:
