@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
+
+#include "calib/yaml_document.hpp"
 
 namespace hitchview::calib {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = 1 << 20;
 constexpr std::size_t kMaxShownBytes = 60;
 
 int LineOf(const YAML::Node& node) {
@@ -78,37 +77,6 @@ std::optional<double> ParseNumber(std::string_view text) {
     const auto parsed = std::from_chars(text.data(), end, number);
     if (parsed.ec != std::errc{} || parsed.ptr != end) return std::nullopt;
     return number;
-}
-
-std::optional<std::string> FileText(const std::filesystem::path& file, YamlComplaints& complaints) {
-    std::error_code error;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || std::filesystem::is_directory(file, error)) {
-        complaints.Add(0, "the file cannot be read, must be a readable YAML file");
-        return std::nullopt;
-    }
-    std::string text(kMaxFileBytes + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > kMaxFileBytes) {
-        complaints.Add(0, "the file is too long, must be at most 1 MiB");
-        return std::nullopt;
-    }
-    return text;
-}
-
-/// The only place where the YAML library may throw.
-std::optional<YAML::Node> Parse(const std::string& text, YamlComplaints& complaints) {
-    try {
-        const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-        if (documents.size() == 1) return documents.front();
-        complaints.Add(1, "the file has " + std::to_string(documents.size()) +
-                              " documents, must be one document");
-    } catch (const YAML::Exception& error) {
-        complaints.Add(std::max(error.mark.line + 1, 1),
-                       "the file is not YAML (" + error.msg + "), must be YAML");
-    }
-    return std::nullopt;
 }
 
 }  // namespace
@@ -248,12 +216,13 @@ void YamlMap::Finish() const {
 }
 
 YamlMap LoadYaml(const std::filesystem::path& file, YamlComplaints& complaints) {
-    const auto text = FileText(file, complaints);
-    const auto root = text ? Parse(*text, complaints) : std::nullopt;
-    if (root && !root->IsMap()) {
-        complaints.Add(1, "the file is " + Shown(*root) + ", must be a map");
+    const YamlDocument document = ReadYamlDocument(file);
+    if (!document.root) {
+        complaints.Add(document.line, document.complaint);
+    } else if (!document.root->IsMap()) {
+        complaints.Add(1, "the file is " + Shown(*document.root) + ", must be a map");
     }
-    return {root, YamlPlace{1, "", complaints.empty() ? &complaints : nullptr}};
+    return {document.root, YamlPlace{1, "", complaints.empty() ? &complaints : nullptr}};
 }
 
 std::string ExactText(double number) {

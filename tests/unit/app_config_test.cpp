@@ -124,6 +124,8 @@ TEST_F(ConfigTest, RandomBytesAndNestingWithoutEndAreErrors) {
     EXPECT_FALSE(Load(std::string(100000, '[')).ok());
     EXPECT_FALSE(Load(std::string("\x00\xff\xfe{:\t&a *a", 11)).ok());
     EXPECT_FALSE(Load("&a [*a, *a]").ok());
+    EXPECT_FALSE(Load(kPlane + "\n...\n, more\n").ok());
+    EXPECT_FALSE(Load(", more\n" + kPlane).ok());
     EXPECT_FALSE(Load(std::string((1 << 20) + 1, ' ')).ok());
 }
 
@@ -186,8 +188,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{kPlane + "placement: {tractor: [0, 0], trailer: [0, 9000]}\n",
                 "rig.yaml:6: placement.trailer[1] is 9000, must be -8192 to 8192"},
         BadFile{kPlane + "--- \nschema: 1\n",
-                "rig.yaml:1: the file has 2 documents, must be one document"},
-        BadFile{"", "rig.yaml:1: the file has 0 documents, must be one document"},
+                "rig.yaml:1: the file does not have one document, must be one"},
+        BadFile{"", "rig.yaml:1: the file does not have one document, must be one"},
         BadFile{"just words\n", "rig.yaml:1: the file is just words, must be a map"},
         BadFile{"schema: 1\ncanvas: {size_px: [1, 2}\n",
                 "rig.yaml:2: the file is not YAML (illegal flow end), must be YAML"},
