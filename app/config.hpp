@@ -34,6 +34,7 @@ struct CanvasConfig {
     Size size_px{};          ///< even, [64, 8192] x [64, 4096]; cylinder: 2048 x 360 unless given
     double horizon = 0.45;   ///< cylinder: share of the height above the horizon. [0, 1]
     double radius_m = 20.0;  ///< cylinder: distance at which the calibration aligns. [1, 1000]
+    double ground_m = -0.4;  ///< cylinder: height of the ground in the unit frame. [-3, 0]
 };
 
 struct CameraConfig {
@@ -66,13 +67,11 @@ struct StabilizationConfig {
         kFree,     ///< uncovered pixels show 'no data'
         kCovered,  ///< zoomed by 1 / cropping, never uncovered
     };
-    enum class Smoother { kSecondDifference, kPaperWeights };
 
     bool enabled = true;
     int lookahead_frames = 0;  ///< frames seen before one is shown; each costs a period. [0, 10]
     Border border = Border::kFree;
     double cropping = 0.90;  ///< share of width and height that stays in view. [0.5, 1]
-    Smoother smoother = Smoother::kSecondDifference;
 };
 
 struct StitchingConfig {

@@ -82,7 +82,7 @@ TEST_F(ConfigTest, WhatTheFileSaysReplacesTheDefaults) {
         Load(kPlane +
              "placement: {tractor: [0, -4], trailer: [540, 6]}\n"
              "stabilization: {border: covered, cropping: 0.8, enabled: false,"
-             " smoother: paper_weights, lookahead_frames: 10}\n"
+             " lookahead_frames: 10}\n"
              "stitching: {kappa: 0.25, enabled: false}\n"
              "threads: {workers: 7}\n"
              "period_ms: 40.5\n"
@@ -94,7 +94,6 @@ TEST_F(ConfigTest, WhatTheFileSaysReplacesTheDefaults) {
     EXPECT_EQ(rig.placement->of[0].y_px, -4);
     EXPECT_EQ(rig.placement->of[1].x_px, 540);
     EXPECT_EQ(rig.stabilization.border, StabilizationConfig::Border::kCovered);
-    EXPECT_EQ(rig.stabilization.smoother, StabilizationConfig::Smoother::kPaperWeights);
     EXPECT_EQ(rig.stabilization.lookahead_frames, 10);
     EXPECT_FALSE(rig.stabilization.enabled);
     EXPECT_EQ(rig.stitching.kappa, 0.25);
@@ -153,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "publish"},
         BadFile{kPlane + "stabilization: {lookahead: 3}\n",
                 "rig.yaml:6: stabilization.lookahead is no key, must be one of enabled, "
-                "lookahead_frames, border, cropping, smoother"},
+                "lookahead_frames, border, cropping"},
         BadFile{kPlane + "stabilization:\n  lookahead_frames: 11\n",
                 "rig.yaml:7: stabilization.lookahead_frames is 11, must be 0 to 10"},
         BadFile{kPlane + "stabilization: {lookahead_frames: 2.5}\n",
@@ -293,8 +292,8 @@ TEST(RigExampleTest, LoadsAndShowsTheDefaults) {
     const RigConfig defaults;
     EXPECT_EQ(rig.canvas.horizon, defaults.canvas.horizon);
     EXPECT_EQ(rig.canvas.radius_m, defaults.canvas.radius_m);
+    EXPECT_EQ(rig.canvas.ground_m, defaults.canvas.ground_m);
     EXPECT_EQ(rig.stabilization.cropping, defaults.stabilization.cropping);
-    EXPECT_EQ(rig.stabilization.smoother, defaults.stabilization.smoother);
     EXPECT_EQ(rig.stitching.kappa, defaults.stitching.kappa);
     EXPECT_EQ(rig.simulation.frames, defaults.simulation.frames);
     EXPECT_EQ(rig.simulation.profile, defaults.simulation.profile);

@@ -1,0 +1,139 @@
+#include "app/board.hpp"
+
+#include <string>
+
+#include "drivers/candump_can_bus.hpp"
+#include "drivers/lcm_publisher.hpp"
+#include "drivers/replay_camera.hpp"
+#include "drivers/simulated_camera.hpp"
+#include "drivers/simulated_can_bus.hpp"
+#include "drivers/steady_clock.hpp"
+
+namespace hitchview::app {
+namespace {
+
+constexpr hal::Instant kDefaultPeriod{33'333'333};
+/// Frames that a decoder may be ahead of the reader.
+constexpr int kFramesAhead = 4;
+
+drivers::DriveProfile Profile(SimulationConfig::Profile profile) {
+    switch (profile) {
+        case SimulationConfig::Profile::kStraight: return drivers::DriveProfile::kStraight;
+        case SimulationConfig::Profile::kSlalom: return drivers::DriveProfile::kSlalom;
+        case SimulationConfig::Profile::kTurnLeft: return drivers::DriveProfile::kTurnLeft;
+        case SimulationConfig::Profile::kTurnRight: return drivers::DriveProfile::kTurnRight;
+    }
+    return drivers::DriveProfile::kStraight;
+}
+
+drivers::SimulationOptions ToOptions(const SimulationConfig& config, hal::Instant period) {
+    drivers::SimulationOptions options;
+    options.seed = config.seed;
+    options.frames = config.frames;
+    options.period = period;
+    options.width_px = config.camera_size_px.width_px;
+    options.height_px = config.camera_size_px.height_px;
+    options.speed_mps = config.speed_mps;
+    options.profile = Profile(config.profile);
+    options.noise_sigma = config.noise;
+    for (const algo::Unit unit : algo::kUnits) {
+        options.shake[unit].scale = config.shake[unit];
+    }
+    return options;
+}
+
+/// Index in the simulated rig; -1 for a name it does not have on that unit.
+int SimulatedIndex(const drivers::SimulatedRig& rig, algo::Unit unit, const std::string& name) {
+    for (int i = 0; i < drivers::SimulatedRig::kCameras; ++i) {
+        const auto& camera = rig.camera(i);
+        if (camera.name == name && camera.unit == unit) return i;
+    }
+    return -1;
+}
+
+}  // namespace
+
+Board::Board() : clock_(std::make_unique<drivers::SteadyClock>()) {}
+Board::~Board() = default;
+
+hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, int held_frames) {
+    std::unique_ptr<Board> board(new Board);
+    if (config.period) board->period_ = *config.period;
+    if (const auto simulated = board->OpenSimulation(config); !simulated) return simulated.error();
+    for (const algo::Unit unit : algo::kUnits) {
+        for (const CameraConfig& camera : config.units[unit].cameras) {
+            const auto opened = board->OpenCamera(config, unit, camera, held_frames + kFramesAhead);
+            if (!opened) return opened.error();
+        }
+    }
+    if (board->period_.count() == 0) board->period_ = kDefaultPeriod;
+    if (const auto can = board->OpenCanBus(config); !can) return can.error();
+    return board;
+}
+
+hal::Checked<hal::Done> Board::OpenSimulation(const RigConfig& config) {
+    bool needed = config.can && config.can->source == CanConfig::Source::kSimulated;
+    for (const algo::Unit unit : algo::kUnits) {
+        for (const CameraConfig& camera : config.units[unit].cameras) {
+            needed = needed || camera.source == CameraConfig::Source::kSimulated;
+        }
+    }
+    if (!needed) return hal::Done{};
+    auto rig = drivers::SimulatedRig::Create(ToOptions(config.simulation, config.period.value_or(kDefaultPeriod)));
+    if (!rig) return config.file.string() + ": simulation: " + rig.error();
+    simulation_ = std::move(*rig);
+    return hal::Done{};
+}
+
+hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit unit,
+                                          const CameraConfig& camera, int slots) {
+    if (camera.source == CameraConfig::Source::kSimulated) {
+        const int index = SimulatedIndex(*simulation_, unit, camera.name);
+        if (index < 0) {
+            return config.file.string() + ": camera " + camera.name + " of the " + ToString(unit) +
+                   " is not one that the simulated rig has (tractor: front, left_front, right_front; "
+                   "trailer: left, left_rear, rear, right_rear, right)";
+        }
+        cameras_[unit].push_back(
+            std::make_unique<drivers::SimulatedCamera>(*simulation_, index, hal::Instant{0}, slots));
+        return hal::Done{};
+    }
+    auto replay = drivers::ReplayCamera::Open(camera.replay.string(), {.name = camera.name, .slots = slots});
+    if (!replay) return config.file.string() + ": camera " + camera.name + ": " + replay.error();
+    if (period_.count() == 0) period_ = hal::Instant(static_cast<std::int64_t>(1e9 / (*replay)->rate_hz()));
+    cameras_[unit].push_back(std::move(*replay));
+    return hal::Done{};
+}
+
+hal::Checked<hal::Done> Board::OpenCanBus(const RigConfig& config) {
+    if (!config.can) return hal::Done{};
+    if (config.can->source == CanConfig::Source::kSimulated) {
+        can_bus_ = std::make_unique<drivers::SimulatedCanBus>(*simulation_, hal::Instant{0});
+        return hal::Done{};
+    }
+    auto bus = drivers::CandumpCanBus::Open(config.can->candump.string(), hal::Instant{0});
+    if (!bus) return bus.error();
+    can_bus_ = std::move(*bus);
+    return hal::Done{};
+}
+
+CameraFormats Board::formats() const {
+    CameraFormats formats;
+    for (const algo::Unit unit : algo::kUnits) {
+        for (const auto& camera : cameras_[unit]) formats[unit].push_back(camera->format());
+    }
+    return formats;
+}
+
+hal::Checked<std::unique_ptr<hal::Publisher>> Board::OpenPublisher(const PublishConfig& config) {
+    auto publisher = drivers::LcmPublisher::Create({.url = config.url,
+                                                    .panorama_channel = config.panorama_channel,
+                                                    .status_channel = config.status_channel,
+                                                    .hitch_angle_channel = config.hitch_angle_channel,
+                                                    .max_image_bytes = config.max_bytes},
+                                                   *clock_);
+    if (!publisher) return publisher.error();
+    return std::unique_ptr<hal::Publisher>(std::move(*publisher));
+}
+
+}  // namespace hitchview::app

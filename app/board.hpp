@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "app/config.hpp"
+#include "app/rig_geometry.hpp"
+#include "hal/camera.hpp"
+#include "hal/can_bus.hpp"
+#include "hal/clock.hpp"
+#include "hal/publisher.hpp"
+
+namespace hitchview::drivers {
+class SimulatedRig;
+}
+
+namespace hitchview::app {
+
+/// The hardware of one rig, opened: real, recorded or simulated. Everything else of the program
+/// sees interfaces only.
+class Board {
+ public:
+    /// Opens what the configuration names. `held_frames`: frame sets that the program keeps lent.
+    static hal::Checked<std::unique_ptr<Board>> Open(const RigConfig& config, int held_frames);
+    ~Board();
+    Board(const Board&) = delete;
+    Board& operator=(const Board&) = delete;
+
+    using Cameras = algo::PerUnit<std::vector<std::unique_ptr<hal::Camera>>>;
+    [[nodiscard]] Cameras& cameras() { return cameras_; }
+    /// Null when the rig names no CAN bus.
+    [[nodiscard]] hal::CanBus* can_bus() { return can_bus_.get(); }
+    [[nodiscard]] hal::Clock& clock() { return *clock_; }
+    /// Time from one frame set to the next.
+    [[nodiscard]] hal::Instant period() const { return period_; }
+    /// Recordings and simulations deliver as fast as they are read; live cameras at their own pace.
+    [[nodiscard]] CameraFormats formats() const;
+
+    hal::Checked<std::unique_ptr<hal::Publisher>> OpenPublisher(const PublishConfig& config);
+
+ private:
+    Board();
+    hal::Checked<hal::Done> OpenSimulation(const RigConfig& config);
+    hal::Checked<hal::Done> OpenCamera(const RigConfig& config, algo::Unit unit, const CameraConfig& camera,
+                                       int slots);
+    hal::Checked<hal::Done> OpenCanBus(const RigConfig& config);
+
+    std::unique_ptr<hal::Clock> clock_;
+    std::unique_ptr<drivers::SimulatedRig> simulation_;
+    Cameras cameras_;
+    std::unique_ptr<hal::CanBus> can_bus_;
+    hal::Instant period_{};
+};
+
+}  // namespace hitchview::app

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+
+namespace hitchview::app {
+
+struct DemoOptions {
+    bool headless = false;                   ///< open no window
+    std::filesystem::path out = "out/demo";  ///< recording, rig file, videos, picture, report
+    int frames = 210;                        ///< frame sets of the drive, 30 per second. [30, 3000]
+    int workers = 2;                         ///< [1, 16]
+    bool realtime = false;                   ///< one frame set per period; late ones are dropped
+};
+
+/// Drives the simulated vehicle through the whole real pipeline: renders the drive once into JPEG
+/// files, replays it through estimation, renderer and LCM, measures the result against the truth and
+/// writes panorama.avi, before_after.png and report.json. Returns the exit code.
+int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop);
+
+}  // namespace hitchview::app

@@ -1,0 +1,40 @@
+#include "app/frame_synchronizer.hpp"
+
+#include <algorithm>
+
+namespace hitchview::app {
+
+hal::Result<hal::FrameLease> FrameSynchronizer::WaitFrame(hal::Camera& camera) const {
+    constexpr std::chrono::milliseconds kPatience{1000};
+    constexpr int kTries = 60;  // a recording on a slow disk is waited for
+    for (int i = 0; i < kTries; ++i) {
+        auto frame = camera.WaitFrame(kPatience);
+        if (frame || frame.error() != hal::Error::kTimeout) return frame;
+    }
+    return hal::Error::kTimeout;
+}
+
+hal::Result<FrameSet> FrameSynchronizer::WaitSet() {
+    FrameSet set;
+    set.sequence = next_sequence_++;
+    int index = 0;
+    bool first = true;
+    for (const algo::Unit unit : algo::kUnits) {
+        for (std::size_t i = 0; i < cameras_[unit].size(); ++i, ++index) {
+            auto frame = WaitFrame(*cameras_[unit][i]);
+            if (!frame && frame.error() != hal::Error::kCorrupted) return frame.error();
+            if (!frame) {
+                set.cameras_missing |= 1U << index;
+                continue;
+            }
+            const hal::Instant at = frame->view().header.captured_at;
+            set.captured_from = first ? at : std::min(set.captured_from, at);
+            set.captured_until = first ? at : std::max(set.captured_until, at);
+            first = false;
+            set.leases[unit][i] = std::move(*frame);
+        }
+    }
+    return set;
+}
+
+}  // namespace hitchview::app

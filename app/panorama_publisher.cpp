@@ -1,0 +1,93 @@
+#include "app/panorama_publisher.hpp"
+
+#include <pthread.h>
+
+#include <cstring>
+
+namespace hitchview::app {
+namespace {
+
+void CopyPacked(const hal::FrameView& picture, std::span<std::uint8_t> to) {
+    std::memcpy(to.data(), picture.planes[0].data, to.size());
+}
+
+}  // namespace
+
+PanoramaPublisher::PanoramaPublisher(hal::Publisher& publisher, const hal::Clock& clock,
+                                     TelemetryThread* telemetry, const hal::FrameFormat& format,
+                                     const PanoramaPublisherOptions& options)
+    : publisher_(publisher),
+      clock_(clock),
+      telemetry_(telemetry),
+      options_(options),
+      pool_(format, kBuffers),
+      encoder_(format, options.jpeg) {
+    while (auto slot = pool_.Take()) free_.Append(*slot);
+    thread_ = std::thread([this] { Work(); });
+}
+
+PanoramaPublisher::~PanoramaPublisher() { Finish(); }
+
+void PanoramaPublisher::Finish() {
+    filled_.Close();
+    if (thread_.joinable()) thread_.join();
+}
+
+bool PanoramaPublisher::Append(const Item& item) {
+    using std::chrono::milliseconds;
+    auto slot = options_.drop_when_late ? free_.TakeFor(milliseconds(0)) : free_.Take();
+    if (!slot) {
+        dropped_.fetch_add(1, std::memory_order_relaxed);
+        return false;
+    }
+    CopyPacked(item.picture, slot->bytes);
+    Filled filled{*slot, item};
+    filled.item.picture.planes = hal::PackedPlanes(item.picture.format, slot->bytes.data());
+    filled_.Append(filled);
+    return true;
+}
+
+void PanoramaPublisher::Work() {
+    pthread_setname_np(pthread_self(), "publish");
+    constexpr std::chrono::milliseconds kBeat{10};
+    while (!filled_.finished()) {
+        if (auto filled = filled_.TakeFor(kBeat)) {
+            Send(*filled);
+            free_.Append(filled->slot);
+        }
+        SendHitchAngles();
+    }
+}
+
+void PanoramaPublisher::Send(Filled& filled) {
+    const Item& item = filled.item;
+    const auto jpeg = encoder_.Encode(item.picture);
+    if (!jpeg) {
+        refused_.fetch_add(1, std::memory_order_relaxed);
+        return;
+    }
+    const hal::FrameHeader& header = item.picture.header;
+    Count(publisher_.Publish(hal::PanoramaImage{.sequence = header.sequence,
+                                                .captured_from = header.captured_at,
+                                                .captured_until = item.captured_until,
+                                                .width_px = item.picture.format.width_px,
+                                                .height_px = item.picture.format.height_px,
+                                                .cameras_missing = item.status.cameras_missing,
+                                                .calibration_id = options_.calibration_id,
+                                                .jpeg = jpeg.value()}));
+    hal::PanoramaStatus status = item.status;
+    status.published_at = clock_.Now();
+    status.dropped += dropped();
+    Count(publisher_.Publish(status));
+}
+
+void PanoramaPublisher::SendHitchAngles() {
+    if (telemetry_ == nullptr) return;
+    while (const auto angle = telemetry_->Take()) Count(publisher_.Publish(*angle));
+}
+
+void PanoramaPublisher::Count(const hal::Result<hal::Done>& outcome) {
+    (outcome ? published_ : refused_).fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace hitchview::app

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/jpeg_encoder.hpp"
+#include "app/telemetry_thread.hpp"
+#include "hal/blocking_ring.hpp"
+#include "hal/clock.hpp"
+#include "hal/frame_pool.hpp"
+#include "hal/publisher.hpp"
+
+namespace hitchview::app {
+
+struct PanoramaPublisherOptions {
+    JpegQualityGovernorOptions jpeg{};
+    std::string calibration_id;
+    bool drop_when_late = true;  ///< false: Append waits, nothing is dropped (unpaced replay)
+};
+
+/// Compresses and sends panoramas off the deadline, on a thread of its own (`publish`), and hands
+/// on the hitch angles that have come meanwhile. Memory is taken at construction.
+class PanoramaPublisher {
+ public:
+    /// `telemetry` may be null. All references must outlive this.
+    PanoramaPublisher(hal::Publisher& publisher, const hal::Clock& clock, TelemetryThread* telemetry,
+                      const hal::FrameFormat& format, const PanoramaPublisherOptions& options);
+    ~PanoramaPublisher();
+
+    struct Item {
+        hal::FrameView picture;             ///< borrowed for the call
+        hal::Instant captured_until{};
+        hal::PanoramaStatus status;         ///< published_at and dropped are filled in here
+    };
+    /// Copies the picture. False: all buffers are still being sent, this one is dropped and counted.
+    /// Thread: pipeline.
+    bool Append(const Item& item);
+    /// Sends what is left and ends the thread. Once.
+    void Finish();
+
+    [[nodiscard]] std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
+    [[nodiscard]] std::uint64_t published() const { return published_.load(std::memory_order_relaxed); }
+    [[nodiscard]] std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
+
+ private:
+    struct Filled {
+        hal::FramePool::Slot slot{};
+        Item item;
+    };
+    static constexpr std::size_t kBuffers = 4;
+
+    void Work();
+    void Send(Filled& filled);
+    void SendHitchAngles();
+    void Count(const hal::Result<hal::Done>& outcome);
+
+    hal::Publisher& publisher_;
+    const hal::Clock& clock_;
+    TelemetryThread* telemetry_;
+    PanoramaPublisherOptions options_;
+    hal::FramePool pool_;
+    hal::BlockingRing<hal::FramePool::Slot, kBuffers> free_;
+    hal::BlockingRing<Filled, kBuffers> filled_;
+    JpegEncoder encoder_;
+    std::atomic<std::uint64_t> dropped_{0};
+    std::atomic<std::uint64_t> published_{0};
+    std::atomic<std::uint64_t> refused_{0};
+    std::thread thread_;
+};
+
+}  // namespace hitchview::app

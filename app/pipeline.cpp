@@ -1,0 +1,117 @@
+#include "app/pipeline.hpp"
+
+namespace hitchview::app {
+namespace {
+
+/// Gains follow slowly, so the overlaps need not be looked at in every frame.
+constexpr std::uint64_t kGainsEvery = 4;
+
+algo::CameraFrame Borrow(const hal::FrameLease& lease) {
+    if (!lease) return {};
+    const hal::FrameView& view = lease.view();
+    HV_EXPECT(view.format.pixel_format == hal::PixelFormat::kNv12);
+    return {.width_px = view.format.width_px,
+            .height_px = view.format.height_px,
+            .luma = view.planes[0].data,
+            .luma_stride_bytes = view.planes[0].stride_bytes,
+            .chroma = view.planes[1].data,
+            .chroma_stride_bytes = view.planes[1].stride_bytes};
+}
+
+algo::RigFrames Borrow(const FrameSet& set) {
+    algo::RigFrames frames;
+    for (const algo::Unit unit : algo::kUnits) {
+        for (std::size_t i = 0; i < algo::kMaxCameras; ++i) frames[unit][i] = Borrow(set.leases[unit][i]);
+    }
+    return frames;
+}
+
+hal::FrameFormat CanvasFormat(const algo::Projection& canvas) {
+    return {canvas.width_px, canvas.height_px, hal::PixelFormat::kI420, hal::Range::kFull};
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const RigGeometry& rig, const algo::UnifiedVertexMotionOptions& options,
+                   algo::TaskRunner& runner)
+    : rig_(rig),
+      lookahead_(options.lookahead_frames),
+      runner_(runner),
+      motion_(rig_.canvas, rig_.units, options),
+      map_(rig_.canvas, rig_.units, algo::SeamOptions{}),
+      format_(CanvasFormat(rig.canvas)),
+      panorama_(hal::FrameBytes(format_)),
+      view_(hal::FrameBytes(format_)) {}
+
+bool Pipeline::Prime(const FrameSet& set) { return motion_.Prime(Borrow(set), runner_); }
+
+void Pipeline::Start() {
+    motion_.Reset();
+    gains_.Reset();
+    for (FrameSet& set : held_) set = FrameSet{};
+    taken_ = shown_ = 0;
+}
+
+const ShownPanorama* Pipeline::Process(FrameSet&& set) {
+    const StageTimer total(times_, Stage::kTotal);
+    FrameSet& held = held_[taken_++ % held_.size()];
+    held = std::move(set);
+    const algo::Composition* composition = nullptr;
+    {
+        const StageTimer timer(times_, Stage::kMotion);
+        composition = motion_.Step(Borrow(held), runner_);
+    }
+    return composition != nullptr ? Show(*composition) : nullptr;
+}
+
+const ShownPanorama* Pipeline::Flush() {
+    const algo::Composition* composition = motion_.Flush();
+    return composition != nullptr ? Show(*composition) : nullptr;
+}
+
+const ShownPanorama* Pipeline::Show(const algo::Composition& composition) {
+    if (shown_ > 0) held_[(shown_ - 1) % held_.size()] = FrameSet{};
+    const FrameSet& set = held_[shown_ % held_.size()];
+    const algo::RigFrames frames = Borrow(set);
+    {
+        const StageTimer timer(times_, Stage::kMap);
+        map_.Build(composition, runner_);
+    }
+    if (shown_ % kGainsEvery == 0) {
+        const StageTimer timer(times_, Stage::kGains);
+        gains_.Update(map_, frames);
+        renderer_.SetGains(gains_.gains());
+    }
+    {
+        const StageTimer timer(times_, Stage::kRender);
+        renderer_.Render(map_, frames, algo::NoData::kPattern, Planes(panorama_), runner_);
+    }
+    ++shown_;
+    result_ = {.picture = {format_, {set.sequence, set.captured_from}, hal::PackedPlanes(format_, panorama_.data())},
+               .captured_until = set.captured_until,
+               .cameras_missing = set.cameras_missing,
+               .composition = &composition};
+    return &result_;
+}
+
+hal::FrameView Pipeline::RenderView(algo::Unit unit) {
+    HV_EXPECT(shown_ > 0);
+    map_.SelectUnit(unit);
+    const algo::RigFrames frames = Borrow(held_[(shown_ - 1) % held_.size()]);
+    renderer_.Render(map_, frames, algo::NoData::kBlack, Planes(view_), runner_);
+    map_.SelectBoth();
+    return {format_, result_.picture.header, hal::PackedPlanes(format_, view_.data())};
+}
+
+algo::PanoramaPlanes Pipeline::Planes(std::vector<std::uint8_t>& memory) const {
+    const std::size_t luma = static_cast<std::size_t>(format_.width_px) * static_cast<std::size_t>(format_.height_px);
+    return {.width_px = format_.width_px,
+            .height_px = format_.height_px,
+            .y = memory.data(),
+            .y_stride_bytes = format_.width_px,
+            .u = memory.data() + luma,
+            .v = memory.data() + luma + luma / 4,
+            .chroma_stride_bytes = format_.width_px / 2};
+}
+
+}  // namespace hitchview::app

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "algo/composed_map.hpp"
+#include "algo/exposure_gains.hpp"
+#include "algo/panorama_renderer.hpp"
+#include "algo/unified_vertex_motion.hpp"
+#include "app/frame_set.hpp"
+#include "app/rig_geometry.hpp"
+#include "app/stage_times.hpp"
+#include "hal/frame.hpp"
+
+namespace hitchview::app {
+
+/// One frame set shown: borrowed until the next call of the pipeline.
+struct ShownPanorama {
+    hal::FrameView picture;              ///< I420, full range; sequence is the frame set's
+    hal::Instant captured_until{};
+    std::uint32_t cameras_missing = 0;
+    const algo::Composition* composition = nullptr;
+};
+
+/// Frame sets in, panoramas out: estimation, composed map, gains, rendering. Memory is taken at
+/// construction. Thread: one.
+class Pipeline {
+ public:
+    Pipeline(const RigGeometry& rig, const algo::UnifiedVertexMotionOptions& options,
+             algo::TaskRunner& runner);
+
+    /// Before the first frame set is shown; see UnifiedVertexMotion::Prime.
+    bool Prime(const FrameSet& set);
+    /// After Prime: what was seen counts as nothing, the layout stays.
+    void Start();
+
+    /// Empty while the lookahead fills. The set's leases are kept until it was shown.
+    const ShownPanorama* Process(FrameSet&& set);
+    /// After the last set: what the lookahead still holds, one per call; then empty.
+    const ShownPanorama* Flush();
+
+    /// The panorama shown last again, with one unit's view alone: warped and placed, before
+    /// blending, black where it has no data. Borrowed like the panorama.
+    hal::FrameView RenderView(algo::Unit unit);
+
+    [[nodiscard]] const AllStageTimes& times() const { return times_; }
+    [[nodiscard]] const algo::ComposedMap& map() const { return map_; }
+    [[nodiscard]] const hal::FrameFormat& format() const { return format_; }
+
+ private:
+    const ShownPanorama* Show(const algo::Composition& composition);
+    algo::PanoramaPlanes Planes(std::vector<std::uint8_t>& memory) const;
+
+    RigGeometry rig_;
+    int lookahead_;
+    algo::TaskRunner& runner_;
+    algo::UnifiedVertexMotion motion_;
+    algo::ComposedMap map_;
+    algo::ExposureGains gains_;
+    algo::PanoramaRenderer renderer_;
+
+    hal::FrameFormat format_;
+    std::vector<std::uint8_t> panorama_;
+    std::vector<std::uint8_t> view_;
+    std::array<FrameSet, algo::kMaxLookahead + 1> held_;
+    std::uint64_t taken_ = 0;
+    std::uint64_t shown_ = 0;
+    ShownPanorama result_;
+    AllStageTimes times_{};
+};
+
+}  // namespace hitchview::app

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hitchview::app {
+
+/// Programs of ours that stand beside this one. What needs a window or tracks videos again is a
+/// program of its own, so that the program on the road does not load those libraries.
+std::filesystem::path SiblingProgram(const std::string& name);
+
+/// Runs a program to its end. Its exit code; 3 if it could not be started or was killed.
+int RunProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+
+/// A program that runs beside this one and is asked to end (SIGTERM) with it.
+class BackgroundProgram {
+ public:
+    BackgroundProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+    ~BackgroundProgram();
+    BackgroundProgram(const BackgroundProgram&) = delete;
+    BackgroundProgram& operator=(const BackgroundProgram&) = delete;
+
+ private:
+    int process_ = -1;
+};
+
+}  // namespace hitchview::app

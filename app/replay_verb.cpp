@@ -1,0 +1,67 @@
+#include "app/replay_verb.hpp"
+
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/program.hpp"
+#include "app/report.hpp"
+
+namespace hitchview::app {
+namespace {
+
+constexpr int kWrongUse = 2;
+constexpr int kMachineFailed = 3;
+
+int Fail(int code, const std::string& why) {
+    std::fprintf(stderr, "%s\n", why.c_str());
+    return code;
+}
+
+std::vector<std::string> EvalArguments(const RigConfig& config, const std::filesystem::path& out,
+                                       const std::filesystem::path& json) {
+    std::vector<std::string> arguments{"--json", json.string(), "--panorama", (out / "panorama.avi").string()};
+    for (const algo::Unit unit : algo::kUnits) {
+        const auto& cameras = config.units[unit].cameras;
+        if (cameras.empty()) continue;
+        const std::string name = ToString(unit);
+        arguments.insert(arguments.end(), {"--" + name + "-out", (out / (name + ".avi")).string()});
+        // A view made of several cameras has no single recording to be compared with.
+        if (cameras.size() == 1 && cameras[0].source == CameraConfig::Source::kReplay) {
+            arguments.insert(arguments.end(), {"--" + name + "-in", cameras[0].replay.string()});
+        }
+    }
+    return arguments;
+}
+
+/// Null when it could not be measured; the evaluating program has said why.
+nlohmann::json MeasureQuality(const RigConfig& config, const std::filesystem::path& out) {
+    const std::filesystem::path file = out / "quality.json";
+    if (RunProgram(SiblingProgram("hitchview-eval"), EvalArguments(config, out, file)) != 0) return nullptr;
+    std::ifstream in(file);
+    return nlohmann::json::parse(in, nullptr, false);
+}
+
+}  // namespace
+
+int ReplayVerb(const ReplayOptions& options, const std::atomic<bool>& stop) {
+    const auto config = LoadRigConfig(options.rig);
+    if (!config) return Fail(kWrongUse, config.error());
+    RunOptions run = options.run;
+    run.write_video = run.write_video || options.metrics;
+    run.write_views = run.write_views || options.metrics;
+    if (run.out.empty() && (run.write_video || run.write_views)) {
+        return Fail(kWrongUse, "--out is needed to write videos or to measure them");
+    }
+
+    const auto summary = RunRig(config.value(), run, stop);
+    if (!summary) return Fail(kMachineFailed, summary.error());
+    std::fputs(Table(summary.value()).c_str(), stdout);
+    if (run.out.empty()) return 0;
+
+    const nlohmann::json quality = options.metrics ? MeasureQuality(config.value(), run.out) : nlohmann::json();
+    const std::string refused = WriteJson(MakeReport(summary.value(), quality), run.out / "report.json");
+    return refused.empty() ? 0 : Fail(kMachineFailed, refused);
+}
+
+}  // namespace hitchview::app

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "app/run_loop.hpp"
+
+namespace hitchview::app {
+
+struct ReplayOptions {
+    std::filesystem::path rig;
+    RunOptions run;
+    bool metrics = false;  ///< track the written views again and measure them
+};
+
+/// `hitchview replay` and `hitchview run`. Returns the exit code: 0 done, 2 rig or options are wrong,
+/// 3 a camera, the disk or the network failed.
+int ReplayVerb(const ReplayOptions& options, const std::atomic<bool>& stop);
+
+}  // namespace hitchview::app

@@ -1,0 +1,166 @@
+#include "app/run_loop.hpp"
+
+#include <system_error>
+
+#include "app/board.hpp"
+#include "app/frame_synchronizer.hpp"
+#include "app/run_outputs.hpp"
+#include "app/worker_pool.hpp"
+
+namespace hitchview::app {
+namespace {
+
+/// Frame sets that may be looked at to find the trailer before the first one is shown.
+constexpr int kPrimeSets = 10;
+
+algo::UnifiedVertexMotionOptions MotionOptions(const RigConfig& config, const RunOptions& options) {
+    algo::UnifiedVertexMotionOptions motion;
+    motion.stabilize = config.stabilization.enabled;
+    motion.stitch = config.stitching.enabled;
+    motion.lookahead_frames = options.lookahead_frames.value_or(config.stabilization.lookahead_frames);
+    motion.border = config.stabilization.border == StabilizationConfig::Border::kCovered ? algo::Border::kCovered
+                                                                                         : algo::Border::kFree;
+    motion.cropping = config.stabilization.cropping;
+    motion.kappa = config.stitching.kappa;
+    if (config.placement) {
+        for (const algo::Unit unit : algo::kUnits) {
+            const Corner& corner = (*config.placement)[unit];
+            if (config.HasUnit(unit)) motion.placement[unit] = Eigen::Vector2d(corner.x_px, corner.y_px);
+        }
+    }
+    return motion;
+}
+
+hal::Checked<std::optional<calib::RigCalibration>> Calibration(const RigConfig& config) {
+    if (config.calibration.empty()) return std::optional<calib::RigCalibration>{};
+    auto loaded = LoadCalibrationFor(config);
+    if (!loaded) return loaded.error();
+    return std::optional<calib::RigCalibration>(std::move(*loaded));
+}
+
+std::string CameraFailure(hal::Error error) {
+    return std::string("a camera gives no more frames: ") + hal::ToString(error);
+}
+
+/// Looks at the first frame sets; the cameras are used up by that.
+hal::Checked<hal::Done> Prime(Board& board, Pipeline& pipeline) {
+    FrameSynchronizer synchronizer(board.cameras());
+    for (int i = 0; i < kPrimeSets; ++i) {
+        const auto set = synchronizer.WaitSet();
+        if (!set && set.error() == hal::Error::kEndOfStream && i > 0) break;
+        if (!set) return CameraFailure(set.error());
+        if (pipeline.Prime(set.value())) break;
+    }
+    pipeline.Start();
+    return hal::Done{};
+}
+
+/// Drives one opened rig; see RunRig.
+class Run {
+ public:
+    Run(Board& board, Pipeline& pipeline, RunOutputs& outputs, const RunOptions& options, RunSummary& summary)
+        : board_(board), pipeline_(pipeline), outputs_(outputs), options_(options), summary_(summary) {}
+
+    hal::Checked<hal::Done> Loop(const std::atomic<bool>& stop, const ShownHook& hook) {
+        FrameSynchronizer synchronizer(board_.cameras());
+        start_ = board_.clock().Now();
+        std::uint64_t taken = 0;
+        while (!stop && (!options_.frames || taken < static_cast<std::uint64_t>(*options_.frames))) {
+            auto set = synchronizer.WaitSet();
+            if (!set && set.error() == hal::Error::kEndOfStream) break;
+            if (!set) return CameraFailure(set.error());
+            ++taken;
+            if (options_.realtime && !WaitForTurn(set->sequence)) continue;
+            const ShownPanorama* shown = pipeline_.Process(std::move(*set));
+            CountDeadline();
+            if (shown != nullptr) {
+                if (const auto done = Show(*shown, hook); !done) return done;
+            }
+        }
+        while (const ShownPanorama* shown = pipeline_.Flush()) {
+            if (const auto done = Show(*shown, hook); !done) return done;
+        }
+        summary_.times = pipeline_.times();
+        summary_.duration_s = std::chrono::duration<double>(board_.clock().Now() - start_).count();
+        return hal::Done{};
+    }
+
+ private:
+    /// False when the set's turn is over: it is dropped, so that no latency queues up.
+    bool WaitForTurn(std::uint32_t sequence) {
+        const hal::Instant due = start_ + board_.period() * sequence;
+        if (board_.clock().Now() > due + board_.period()) {
+            ++summary_.dropped;
+            return false;
+        }
+        board_.clock().SleepUntil(due);
+        return true;
+    }
+
+    void CountDeadline() {
+        summary_.newest_total_ms = pipeline_.times()[static_cast<std::size_t>(Stage::kTotal)].last_ms();
+        if (summary_.newest_total_ms > summary_.period_ms) ++summary_.deadline_misses;
+    }
+
+    hal::Checked<hal::Done> Show(const ShownPanorama& shown, const ShownHook& hook) {
+        ++summary_.frames;
+        for (const algo::Overlap overlap : algo::kOverlaps) {
+            if (shown.composition->seams[overlap] == algo::SeamState::kLocked) ++summary_.locked_frames[overlap];
+        }
+        const auto done = outputs_.Show(shown, pipeline_, summary_, start_);
+        if (done && hook) hook(shown, pipeline_);
+        return done;
+    }
+
+    Board& board_;
+    Pipeline& pipeline_;
+    RunOutputs& outputs_;
+    const RunOptions& options_;
+    RunSummary& summary_;
+    hal::Instant start_{};
+};
+
+}  // namespace
+
+hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& options,
+                                const std::atomic<bool>& stop, const ShownHook& hook) {
+    if (!options.out.empty()) {
+        std::error_code refused;
+        std::filesystem::create_directories(options.out, refused);
+        if (refused) return options.out.string() + ": " + refused.message();
+    }
+    auto calibration = Calibration(config);
+    if (!calibration) return calibration.error();
+    const algo::UnifiedVertexMotionOptions motion = MotionOptions(config, options);
+    const int held = motion.lookahead_frames + 2;
+    auto board = Board::Open(config, held);
+    if (!board) return board.error();
+    const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
+    if (!rig) return rig.error();
+
+    WorkerPool workers(options.workers.value_or(config.workers));
+    Pipeline pipeline(rig.value(), motion, workers);
+    if (const auto primed = Prime(**board, pipeline); !primed) return primed.error();
+    // A recording starts again from its first frame.
+    board = Board::Open(config, held);
+    if (!board) return board.error();
+
+    RunSummary summary;
+    summary.period_ms = std::chrono::duration<double, std::milli>((*board)->period()).count();
+    if (*calibration) summary.calibration_id = (*calibration)->id();
+    summary.ring = rig.value().canvas.IsRing();
+    for (const algo::Unit unit : algo::kUnits) {
+        summary.cameras[unit] = static_cast<int>(config.units[unit].cameras.size());
+    }
+    auto outputs = RunOutputs::Open(config, options, **board, summary, pipeline.format());
+    if (!outputs) return outputs.error();
+    const auto done = Run(**board, pipeline, **outputs, options, summary).Loop(stop, hook);
+    pipeline.Start();  // gives the last leases back while the cameras live
+    const auto finished = (*outputs)->Finish();
+    if (!done) return done.error();
+    if (!finished) return finished.error();
+    summary.dropped += (*outputs)->dropped();
+    return summary;
+}
+
+}  // namespace hitchview::app

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "app/config.hpp"
+#include "app/pipeline.hpp"
+
+namespace hitchview::app {
+
+struct RunOptions {
+    std::filesystem::path out;            ///< folder for report and videos; empty: none are written
+    std::optional<int> frames;            ///< at most so many frame sets
+    std::optional<int> lookahead_frames;  ///< instead of the rig file's
+    std::optional<int> workers;           ///< instead of the rig file's
+    bool realtime = false;                ///< one frame set per period; late ones are dropped
+    bool write_video = false;             ///< out/panorama.avi
+    bool write_views = false;             ///< out/tractor.avi, out/trailer.avi
+    bool publish = false;                 ///< over LCM
+};
+
+/// What a run did.
+struct RunSummary {
+    std::uint64_t frames = 0;           ///< panoramas shown
+    std::uint64_t dropped = 0;          ///< frame sets never shown
+    std::uint64_t deadline_misses = 0;  ///< frame sets that took longer than a period
+    double period_ms = 0;
+    double duration_s = 0;              ///< from the first frame set to the last panorama
+    std::string calibration_id;
+    double newest_total_ms = 0;         ///< of the frame set processed last
+    AllStageTimes times{};              ///< when the run has ended
+    algo::PerOverlap<std::uint64_t> locked_frames;
+    algo::PerUnit<int> cameras;
+    bool ring = false;
+};
+
+/// Sees every panorama that is shown, in order. Thread: the run loop's.
+using ShownHook = std::function<void(const ShownPanorama&, const Pipeline&)>;
+
+/// Opens the rig and makes panoramas until the sources end, `options.frames` were shown or `stop`
+/// is set. Error: what is wrong with rig, recordings, outputs or network, in words.
+hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& options,
+                                const std::atomic<bool>& stop, const ShownHook& hook = {});
+
+}  // namespace hitchview::app

@@ -1,0 +1,121 @@
+#include "app/run_outputs.hpp"
+
+#include "app/board.hpp"
+
+namespace hitchview::app {
+namespace {
+
+hal::SeamState ToHal(algo::SeamState state) {
+    switch (state) {
+        case algo::SeamState::kNoOverlap: return hal::SeamState::kNoOverlap;
+        case algo::SeamState::kReacquire: return hal::SeamState::kReacquire;
+        case algo::SeamState::kCoast: return hal::SeamState::kCoast;
+        case algo::SeamState::kLocked: return hal::SeamState::kLocked;
+    }
+    return hal::SeamState::kNoOverlap;
+}
+
+hal::PanoramaStatus Status(const ShownPanorama& shown, const RunSummary& run, hal::Instant start) {
+    const algo::Composition& c = *shown.composition;
+    hal::PanoramaStatus status;
+    status.sequence = shown.picture.header.sequence;
+    status.captured_from = start + shown.picture.header.captured_at;
+    status.cameras_missing = shown.cameras_missing;
+    for (const algo::Overlap overlap : algo::kOverlaps) {
+        const auto i = static_cast<std::size_t>(overlap);
+        status.seams[i] = ToHal(c.seams[overlap]);
+        status.seam_matches[i] = c.matches[overlap];
+    }
+    for (const algo::Unit unit : algo::kUnits) {
+        status.unit_features[static_cast<std::size_t>(unit)] = c.features[unit];
+    }
+    status.total_ms = run.newest_total_ms;
+    status.deadline_misses = run.deadline_misses;
+    status.dropped = run.dropped;
+    return status;
+}
+
+}  // namespace
+
+hal::Checked<std::unique_ptr<RunOutputs>> RunOutputs::Open(const RigConfig& config, const RunOptions& options,
+                                                           Board& board, const RunSummary& run,
+                                                           const hal::FrameFormat& format) {
+    std::unique_ptr<RunOutputs> outputs(new RunOutputs);
+    if (const auto videos = outputs->OpenVideos(options, run, format); !videos) return videos.error();
+    if (const auto network = outputs->OpenNetwork(config, options, board, run, format); !network) {
+        return network.error();
+    }
+    return outputs;
+}
+
+hal::Checked<hal::Done> RunOutputs::OpenVideos(const RunOptions& options, const RunSummary& run,
+                                               const hal::FrameFormat& format) {
+    const auto open = [&](const char* name, std::unique_ptr<VideoWriter>& video) -> hal::Checked<hal::Done> {
+        const std::string path = (options.out / (std::string(name) + ".avi")).string();
+        auto opened = VideoWriter::Open(path, format, {.name = name, .rate_hz = 1000 / run.period_ms});
+        if (!opened) return opened.error();
+        video = std::move(*opened);
+        return hal::Done{};
+    };
+    if (options.write_video) {
+        if (const auto opened = open("panorama", panorama_); !opened) return opened;
+    }
+    for (const algo::Unit unit : algo::kUnits) {
+        if (!options.write_views || run.cameras[unit] == 0) continue;
+        if (const auto opened = open(ToString(unit), views_[unit]); !opened) return opened;
+    }
+    return hal::Done{};
+}
+
+hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const RunOptions& options,
+                                                Board& board, const RunSummary& run,
+                                                const hal::FrameFormat& format) {
+    if (!options.publish) return hal::Done{};
+    auto network = board.OpenPublisher(config.publish);
+    if (!network) return network.error();
+    network_ = std::move(*network);
+    if (board.can_bus() != nullptr) {
+        telemetry_ = std::make_unique<TelemetryThread>(*board.can_bus(), config.can->hitch_angle,
+                                                       TelemetryOptions{.paced = true});
+    }
+    publisher_ = std::make_unique<PanoramaPublisher>(
+        *network_, board.clock(), telemetry_.get(), format,
+        PanoramaPublisherOptions{.jpeg = {.budget_bytes = config.publish.max_bytes,
+                                          .highest_quality = config.publish.jpeg_quality},
+                                 .calibration_id = run.calibration_id,
+                                 .drop_when_late = options.realtime});
+    return hal::Done{};
+}
+
+hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& pipeline, const RunSummary& run,
+                                         hal::Instant start) {
+    if (publisher_) Publish(shown, run, start);
+    const std::string full = "cannot write the video: ";
+    if (panorama_ && !panorama_->Append(shown.picture)) return full + panorama_->Finish().error();
+    for (const algo::Unit unit : algo::kUnits) {
+        if (!views_[unit]) continue;
+        if (!views_[unit]->Append(pipeline.RenderView(unit))) return full + views_[unit]->Finish().error();
+    }
+    return hal::Done{};
+}
+
+void RunOutputs::Publish(const ShownPanorama& shown, const RunSummary& run, hal::Instant start) {
+    if (telemetry_) telemetry_->Advance(shown.captured_until);
+    hal::FrameView picture = shown.picture;
+    picture.header.captured_at += start;
+    publisher_->Append({.picture = picture,
+                        .captured_until = start + shown.captured_until,
+                        .status = Status(shown, run, start)});
+}
+
+hal::Checked<hal::Done> RunOutputs::Finish() {
+    if (publisher_) publisher_->Finish();
+    for (VideoWriter* video : {panorama_.get(), views_[algo::Unit::kTractor].get(),
+                               views_[algo::Unit::kTrailer].get()}) {
+        if (video == nullptr) continue;
+        if (const auto finished = video->Finish(); !finished) return finished.error();
+    }
+    return hal::Done{};
+}
+
+}  // namespace hitchview::app

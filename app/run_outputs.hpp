@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+
+#include "app/panorama_publisher.hpp"
+#include "app/pipeline.hpp"
+#include "app/run_loop.hpp"
+#include "app/telemetry_thread.hpp"
+#include "app/video_writer.hpp"
+
+namespace hitchview::app {
+
+class Board;
+
+/// Where the panoramas of a run go: videos and the network.
+class RunOutputs {
+ public:
+    static hal::Checked<std::unique_ptr<RunOutputs>> Open(const RigConfig& config, const RunOptions& options,
+                                                          Board& board, const RunSummary& run,
+                                                          const hal::FrameFormat& format);
+
+    /// `run`: counts so far. `start`: CLOCK_MONOTONIC moment of the recording's moment 0.
+    hal::Checked<hal::Done> Show(const ShownPanorama& shown, Pipeline& pipeline, const RunSummary& run,
+                                 hal::Instant start);
+    hal::Checked<hal::Done> Finish();
+    [[nodiscard]] std::uint64_t dropped() const { return publisher_ ? publisher_->dropped() : 0; }
+
+ private:
+    RunOutputs() = default;
+    hal::Checked<hal::Done> OpenVideos(const RunOptions& options, const RunSummary& run, const hal::FrameFormat& format);
+    hal::Checked<hal::Done> OpenNetwork(const RigConfig& config, const RunOptions& options, Board& board,
+                                        const RunSummary& run, const hal::FrameFormat& format);
+    void Publish(const ShownPanorama& shown, const RunSummary& run, hal::Instant start);
+
+    std::unique_ptr<VideoWriter> panorama_;
+    algo::PerUnit<std::unique_ptr<VideoWriter>> views_;
+    std::unique_ptr<hal::Publisher> network_;
+    std::unique_ptr<TelemetryThread> telemetry_;
+    std::unique_ptr<PanoramaPublisher> publisher_;
+};
+
+}  // namespace hitchview::app

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <string_view>
+
+namespace hitchview::app {
+
+/// The steps of one frame set that are timed. kTotal is the sum as the deadline sees it.
+enum class Stage { kMotion, kMap, kGains, kRender, kTotal };
+inline constexpr int kStages = 5;
+
+constexpr std::string_view ToString(Stage stage) {
+    constexpr std::array<std::string_view, kStages> kNames{"motion", "map", "gains", "render", "total"};
+    return kNames[static_cast<std::size_t>(stage)];
+}
+
+/// Times of one stage over the newest kWindow frame sets, in memory of its own.
+class StageTimes {
+ public:
+    static constexpr std::size_t kWindow = 1024;
+
+    void Add(std::chrono::nanoseconds duration);
+
+    struct Summary {
+        double last_ms = 0, p50_ms = 0, p99_ms = 0, max_ms = 0;
+    };
+    /// Of the window; all 0 before the first Add. `max_ms` is since the start.
+    [[nodiscard]] Summary Summarise() const;
+    [[nodiscard]] double last_ms() const { return count_ == 0 ? 0 : window_ms_[(count_ - 1) % kWindow]; }
+
+ private:
+    std::array<float, kWindow> window_ms_{};
+    std::size_t count_ = 0;
+    float max_ms_ = 0;
+};
+
+using AllStageTimes = std::array<StageTimes, kStages>;
+
+/// Adds the time from construction to destruction to a stage.
+class StageTimer {
+ public:
+    StageTimer(AllStageTimes& times, Stage stage)
+        : times_(times[static_cast<std::size_t>(stage)]), start_(std::chrono::steady_clock::now()) {}
+    ~StageTimer() { times_.Add(std::chrono::steady_clock::now() - start_); }
+    StageTimer(const StageTimer&) = delete;
+    StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+    StageTimes& times_;
+    std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace hitchview::app

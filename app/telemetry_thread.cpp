@@ -1,0 +1,93 @@
+#include "app/telemetry_thread.hpp"
+
+#include <pthread.h>
+
+#include <limits>
+
+#include "app/hitch_angle_decoder.hpp"
+#include "hal/expect.hpp"
+
+namespace hitchview::app {
+namespace {
+
+using hal::Instant;
+using Limits = std::numeric_limits<Instant::rep>;
+
+constexpr std::chrono::milliseconds kLongestWait{50};
+
+}  // namespace
+
+TelemetryThread::TelemetryThread(hal::CanBus& bus, const HitchAngleSignal& signal,
+                                 const TelemetryOptions& options)
+    : bus_(bus),
+      signal_(signal),
+      options_(options),
+      reached_ns_(options.paced ? Limits::min() : Limits::max()) {
+    HV_EXPECT(options.retry_after.count() > 0);
+    thread_ = std::thread([this] { Work(); });
+}
+
+TelemetryThread::~TelemetryThread() {
+    {
+        const std::lock_guard lock(rest_mutex_);
+        stop_ = true;
+    }
+    rested_.notify_one();
+    Advance(Instant::max());
+    thread_.join();
+}
+
+void TelemetryThread::Advance(Instant captured) {
+    Instant::rep reached_ns = reached_ns_.load();
+    while (reached_ns < captured.count()) {
+        if (reached_ns_.compare_exchange_weak(reached_ns, captured.count())) {
+            reached_ns_.notify_all();
+            return;
+        }
+    }
+}
+
+TelemetryCounts TelemetryThread::counts() const {
+    return {.frames = frames_,
+            .angles = handed_over_,
+            .refused = angles_.refused(),
+            .failures = failures_};
+}
+
+void TelemetryThread::Work() {
+    pthread_setname_np(pthread_self(), "can");
+    while (!stop_) {
+        const hal::Result<hal::CanFrame> frame = bus_.WaitFrame(kLongestWait);
+        if (frame) {
+            HandOver(frame.value());
+        } else if (frame.error() == hal::Error::kEndOfStream) {
+            return;
+        } else if (frame.error() != hal::Error::kTimeout) {
+            RestAfterFailure();
+        }
+    }
+}
+
+void TelemetryThread::HandOver(const hal::CanFrame& frame) {
+    ++frames_;
+    const std::optional<hal::HitchAngle> maybe_angle = DecodeHitchAngle(signal_, frame);
+    if (!maybe_angle) return;
+    HoldUntil(frame.received_at);
+    if (!stop_ && angles_.Append(*maybe_angle)) ++handed_over_;
+}
+
+void TelemetryThread::HoldUntil(Instant received_at) {
+    Instant::rep reached_ns = reached_ns_.load();
+    while (reached_ns < received_at.count()) {
+        reached_ns_.wait(reached_ns);
+        reached_ns = reached_ns_.load();
+    }
+}
+
+void TelemetryThread::RestAfterFailure() {
+    ++failures_;
+    std::unique_lock lock(rest_mutex_);
+    rested_.wait_for(lock, options_.retry_after, [this] { return stop_.load(); });
+}
+
+}  // namespace hitchview::app

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "app/config.hpp"
+#include "hal/can_bus.hpp"
+#include "hal/hitch_angle.hpp"
+#include "hal/ring.hpp"
+
+namespace hitchview::app {
+
+struct TelemetryOptions {
+    /// For recordings and simulation, which answer at once: an angle is held back until the frame
+    /// sets have reached its moment. False for a live bus: it is handed over as it comes.
+    bool paced = true;
+    std::chrono::milliseconds retry_after{200};  ///< after a bus that failed. > 0
+};
+
+/// Since the start.
+struct TelemetryCounts {
+    std::uint64_t frames = 0;    ///< received from the bus, of all ids
+    std::uint64_t angles = 0;    ///< decoded and handed over
+    std::uint64_t refused = 0;   ///< decoded and lost: nobody took the earlier ones
+    std::uint64_t failures = 0;  ///< bus disconnected or failed; tried again
+};
+
+/// Carries the hitch angle from the CAN bus to the publisher on a thread of its own, named `can`.
+/// It ends with the recording. Takes no memory after construction. Threads: Advance the run loop's,
+/// Take the publisher's, counts any.
+class TelemetryThread {
+ public:
+    static constexpr std::size_t kCapacity = 256;  ///< angles waiting to be taken
+
+    /// `bus` must outlive the thread and belongs to it until then.
+    TelemetryThread(hal::CanBus& bus, const HitchAngleSignal& signal,
+                    const TelemetryOptions& options);
+    /// Waits for the bus to answer, at most 50 ms, and for nothing else.
+    ~TelemetryThread();
+    TelemetryThread(const TelemetryThread&) = delete;
+    TelemetryThread& operator=(const TelemetryThread&) = delete;
+
+    /// Lets go of what was received until `captured`, the capture time of the newest frame set. An
+    /// earlier moment than the last one changes nothing. Does not wait; without effect unless
+    /// paced.
+    void Advance(hal::Instant captured);
+
+    /// The next angle in the order of the bus; empty when there is none yet.
+    std::optional<hal::HitchAngle> Take() { return angles_.Take(); }
+
+    [[nodiscard]] TelemetryCounts counts() const;
+
+ private:
+    void Work();
+    void HandOver(const hal::CanFrame& frame);
+    void HoldUntil(hal::Instant received_at);
+    void RestAfterFailure();
+
+    hal::CanBus& bus_;
+    const HitchAngleSignal signal_;
+    const TelemetryOptions options_;
+
+    hal::Ring<hal::HitchAngle, kCapacity> angles_;
+    std::atomic<std::uint64_t> frames_{0};
+    std::atomic<std::uint64_t> handed_over_{0};
+    std::atomic<std::uint64_t> failures_{0};
+
+    std::atomic<hal::Instant::rep>
+        reached_ns_;  // never steps back; the largest value when stopping
+    std::atomic<bool> stop_{false};
+    std::mutex rest_mutex_;  // with rested_: cuts a rest short, never held by Advance or Take
+    std::condition_variable rested_;
+    std::thread thread_;  // last: it uses all of the above
+};
+
+}  // namespace hitchview::app
