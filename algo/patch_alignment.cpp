@@ -1,5 +1,7 @@
 #include "algo/patch_alignment.hpp"
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace hitchview::algo {
