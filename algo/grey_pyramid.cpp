@@ -48,7 +48,7 @@ GreyPyramid::GreyPyramid(int width_px, int height_px)
     levels_[0] = cv::Mat1b(height_px, width_px, std::uint8_t{0});
     while (count_ < kMaxLevels) {
         const cv::Mat1b& fine = levels_[static_cast<std::size_t>(count_ - 1)];
-        if (std::min(fine.cols, fine.rows) < 2 * kShortestSide) break;
+        if ((std::min(fine.cols, fine.rows) + 1) / 2 < kShortestSide) break;
         levels_[static_cast<std::size_t>(count_++)] =
             cv::Mat1b((fine.rows + 1) / 2, (fine.cols + 1) / 2, std::uint8_t{0});
     }

@@ -27,6 +27,7 @@ class GreyPyramid {
     friend void swap(GreyPyramid& a, GreyPyramid& b) noexcept {
         std::swap(a.levels_, b.levels_);
         std::swap(a.count_, b.count_);
+        std::swap(a.column_sums_, b.column_sums_);
     }
 
  private:
