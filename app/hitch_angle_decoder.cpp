@@ -58,7 +58,7 @@ std::optional<HitchAngleQuality> CodeOf(const HitchAngleSignal& signal, std::uin
     return std::nullopt;
 }
 
-double AngleOf_deg(const HitchAngleSignal& signal, std::uint64_t raw) {
+double DegreesOf(const HitchAngleSignal& signal, std::uint64_t raw) {
     auto value = static_cast<std::int64_t>(raw);
     const std::int64_t sign = std::int64_t{1} << (signal.length_bits - 1);
     if (signal.is_signed && (value & sign) != 0) value -= 2 * sign;
@@ -81,7 +81,7 @@ std::optional<hal::HitchAngle> DecodeHitchAngle(const HitchAngleSignal& signal,
     hal::HitchAngle angle{.quality = HitchAngleQuality::kError, .received_at = frame.received_at};
     const auto maybe_raw = RawOf(signal, Bytes(frame.data).first(frame.size_bytes));
     if (!maybe_raw) return angle;
-    const double angle_deg = AngleOf_deg(signal, *maybe_raw);
+    const double angle_deg = DegreesOf(signal, *maybe_raw);
     const auto number = IsPlausible(signal, angle_deg) ? HitchAngleQuality::kValid
                                                        : HitchAngleQuality::kImplausible;
     angle.quality = CodeOf(signal, *maybe_raw).value_or(number);
