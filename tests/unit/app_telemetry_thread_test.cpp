@@ -69,16 +69,16 @@ TEST(TelemetryThreadTest, ARecordingIsHandedOverOnlyAsFarAsTheFrameSetsHaveCome)
     hal::FakeCanBus bus(FramesUpTo(99));
     TelemetryThread telemetry(bus, ByteSignal(), {});
     WaitUntil([&] { return telemetry.counts().frames >= 1; });
-    EXPECT_FALSE(telemetry.Take());
+    ASSERT_FALSE(telemetry.Take());
     for (int reached = 9; reached <= 99; reached += 10) {
         telemetry.Advance(milliseconds(reached));
         for (int i = reached - 9; i <= reached; ++i) {
-            EXPECT_EQ(WaitTake(telemetry).received_at, milliseconds(i));
+            ASSERT_EQ(WaitTake(telemetry).received_at, milliseconds(i));
         }
         // The next frame is there, and held.
         WaitUntil(
             [&] { return telemetry.counts().frames >= std::min<std::uint64_t>(reached + 2, 100); });
-        EXPECT_FALSE(telemetry.Take());
+        ASSERT_FALSE(telemetry.Take());
     }
     WaitUntil([&] { return telemetry.counts().angles == 100; });
 }
