@@ -76,7 +76,7 @@ std::optional<Matrix3d> RotationModel::Fit(std::span<const RayPair> pairs,
         sum += weights[i] * pairs[i].to * pairs[i].from.transpose();
     }
     const Eigen::JacobiSVD<Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    if (svd.singularValues()(1) < 1e-6 * svd.singularValues()(0)) return std::nullopt;
+    if (!(svd.singularValues()(1) > 1e-6 * svd.singularValues()(0))) return std::nullopt;
     const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
     return Matrix3d(svd.matrixU() * Vector3d{1, 1, sign}.asDiagonal() * svd.matrixV().transpose());
 }
