@@ -16,7 +16,7 @@ using CanvasPairs = FixedVector<CanvasPair, kMaxCanvasPairs>;
 
 struct StitchingMotionFieldOptions {
     double kappa = 0.5;            ///< who moves: 0 the trailer alone, 1 the tractor alone
-    double gain = 0.35;            ///< share of the newest measurement at a well supported vertex
+    double gain = 0.8;             ///< share of the newest measurement at a well supported vertex
     double max_discrepancy_px = 24;
     int homography_inliers = 24;   ///< fewer pairs carry no global model
     MagsacOptions robust{.max_sigma_px = 1.5, .max_iterations = 150};

@@ -56,7 +56,7 @@ StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double ka
 Vector3d Wall(const Projection& view, const UnifiedVertexMotionOptions& options) {
     constexpr double kDegree = std::numbers::pi / 180;
     if (view.IsRing()) return {3 * kDegree * view.focal_px, 3 * kDegree, 3 * kDegree};
-    if (options.border == Border::kFree) return {0.22 * view.width_px, 0.22 * view.height_px, 0.12};
+    if (options.border == Border::kFree) return {0.28 * view.width_px, 0.28 * view.height_px, 0.06};
     const double margin = 0.5 * (1 - options.cropping);
     // The turn eats its share of the shift's margin: half the diagonal times the turn.
     const double turn = 0.25 * margin;
@@ -73,7 +73,7 @@ PathSmootherOptions SmootherOptions(const Projection& view, const UnifiedVertexM
 
 PathSmootherOptions HitchSmootherOptions(const Projection& view) {
     PathSmootherOptions smoother;
-    smoother.weakest_pull = 3e-3;
+    smoother.weakest_pull = 0.03;
     smoother.strongest_pull = 3.0;
     smoother.wall = {8, view.IsRing() ? 0.02 : 8, view.IsRing() ? 0.02 : 0.03};
     return smoother;

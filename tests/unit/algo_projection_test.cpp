@@ -61,7 +61,8 @@ TEST_P(EveryProjectionTest, TheScaledPictureShowsTheSameRaysAtTheSameShareOfItsS
     EXPECT_LT((half.Ray(at_half) - p.Ray(at)).norm(), 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, EveryProjectionTest, testing::Values(kPlane, kRing));
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryProjectionTest, testing::Values(kPlane, kRing),
+                         [](const auto& test) { return test.param.IsRing() ? "Ring" : "Plane"; });
 
 TEST(CylinderTest, AzimuthGrowsToTheLeftAndElevationUpwards) {
     const Vector2d centre = kRing.Centre();
