@@ -11,6 +11,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 
+constexpr double kGain = 0.3;
 const Projection kPlane = Projection::Plane(800, 400);
 const Projection kRing = Projection::Cylinder(1600, 320, 0.5);
 
@@ -57,7 +58,7 @@ class TrailerPlacementTest : public testing::TestWithParam<Projection> {
     cv::RNG random_{17};
     Matrix3d truth_ = Pose(220, 8, 0.02);
     std::unique_ptr<TrailerPlacement> placement_ =
-        std::make_unique<TrailerPlacement>(view_, view_, TrailerPlacementOptions{});
+        std::make_unique<TrailerPlacement>(view_, view_, TrailerPlacementOptions{.gain = kGain});
 };
 
 TEST_P(TrailerPlacementTest, IsAcquiredFromPairsOfWhichHalfAreWrong) {
@@ -126,7 +127,7 @@ TEST_P(TrailerPlacementTest, OnceSettledTheNoiseOfOneFrameCountsByTheGainOnly) {
     for (int i = 0; i < 20; ++i) ASSERT_TRUE(placement_->Correct(Pairs(truth_)));
     const Matrix3d jump = Pose(230, 8, 0.02);
     ASSERT_TRUE(placement_->Correct(Pairs(jump)));
-    EXPECT_NEAR(Error(truth_), 0.3 * 10, 0.3);
+    EXPECT_NEAR(Error(truth_), kGain * 10, 0.3);
 }
 
 TEST_P(TrailerPlacementTest, APairAgreesIfThePosePutsItWithinTheLimit) {
