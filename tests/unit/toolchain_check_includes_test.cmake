@@ -25,6 +25,10 @@ function(make_tree tree)
     file(WRITE ${tree}/app/pipeline.hpp "#include \"app/config.hpp\"\n#include \"hal/frame.hpp\"\n")
     file(WRITE ${tree}/app/board.cpp "#include \"drivers/lcm_url.hpp\"\n#include \"app/config.hpp\"\n")
     file(WRITE ${tree}/app/view_verb.cpp "#include \"drivers/lcm_subscriber.hpp\"\n")
+    file(WRITE ${tree}/app/demo_truth.cpp "#include \"drivers/simulated_rig.hpp\"\n#include \"algo/camera_model.hpp\"\n")
+    file(WRITE ${tree}/app/evaluation.cpp "#include \"drivers/replay_camera.hpp\"\n")
+    file(WRITE ${tree}/app/frame_set.hpp "#include \"hal/frame.hpp\"\n")
+    file(WRITE ${tree}/app/rig_geometry.cpp "#include \"app/config.hpp\"\n")
 endfunction()
 
 function(expect_caught file line complaint)
@@ -59,6 +63,10 @@ expect_caught(drivers/simulated_rig.cpp [["drivers/lcm_url.hpp"]]
 expect_caught(app/config.hpp [["drivers/lcm_url.hpp"]]
     "app/config.hpp:2: only app/board.cpp may name a concrete driver, not drivers/lcm_url.hpp")
 expect_caught(app/view_verb.cpp [["drivers/lcm_url.hpp"]] "only app/board.cpp may name a concrete driver")
+expect_caught(app/demo_truth.cpp [["drivers/lcm_publisher.hpp"]] "only app/board.cpp may name a concrete driver")
+expect_caught(app/evaluation.cpp [["drivers/simulated_rig.hpp"]] "only app/board.cpp may name a concrete driver")
+expect_caught(app/frame_set.hpp [["hal/hitch_angle.hpp"]] "reached: app/frame_set.hpp -> hal/hitch_angle.hpp")
+expect_caught(app/rig_geometry.cpp [["hal/publisher.hpp"]] "reached: app/rig_geometry.cpp -> hal/publisher.hpp")
 expect_caught(app/pipeline.hpp [["hal/publisher.hpp"]]
     "reached: app/pipeline.hpp -> hal/publisher.hpp -> hal/hitch_angle.hpp")
 
