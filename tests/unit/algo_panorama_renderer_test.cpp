@@ -1,0 +1,298 @@
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <thread>
+
+#include "algo/panorama_renderer.hpp"
+#include "algo/unified_vertex_motion.hpp"
+#include "tests/support/nv12_picture.hpp"
+#include "tests/support/sine_texture.hpp"
+#include "tests/support/small_ring.hpp"
+#include "tests/support/test_pictures.hpp"
+
+namespace hitchview::algo {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using tests::Nv12Picture;
+using tests::PanoramaPicture;
+
+const cv::Size kSize(202, 106);  // no multiple of the block
+
+using Rig = PerUnit<std::optional<UnitGeometry>>;
+
+Rig PlaneRig(bool trailer = false) {
+    Rig rig;
+    rig[Unit::kTractor] = UnitGeometry::Plane(kSize.width, kSize.height);
+    if (trailer) rig[Unit::kTrailer] = UnitGeometry::Plane(kSize.width, kSize.height);
+    return rig;
+}
+
+/// Last piece first.
+class ReversedRunner final : public TaskRunner {
+    void DoRun(int count, void (*piece)(void* context, int i), void* context) override {
+        for (int i = count - 1; i >= 0; --i) piece(context, i);
+    }
+};
+
+/// Every fourth piece on a thread of its own kind.
+class ThreadedRunner final : public TaskRunner {
+    void DoRun(int count, void (*piece)(void* context, int i), void* context) override {
+        std::array<std::thread, 4> threads;
+        for (int t = 0; t < 4; ++t) {
+            threads[static_cast<std::size_t>(t)] = std::thread([=] {
+                for (int i = t; i < count; i += 4) piece(context, i);
+            });
+        }
+        for (std::thread& thread : threads) thread.join();
+    }
+};
+
+/// Builds the map and renders once.
+PanoramaPicture Render(const Projection& canvas, const Rig& rig, const Composition& composition,
+                       const RigFrames& frames, NoData no_data, TaskRunner& runner) {
+    ComposedMap map(canvas, rig, {});
+    map.Build(composition, runner);
+    PanoramaPicture panorama({canvas.width_px, canvas.height_px});
+    PanoramaRenderer().Render(map, frames, no_data, panorama.planes(), runner);
+    return panorama;
+}
+
+PanoramaPicture RenderPlane(const Matrix3d& M_canvas_view, const CameraFrame& frame,
+                            NoData no_data = NoData::kPattern) {
+    SerialRunner runner;
+    Composition composition;
+    composition.M_canvas_view[Unit::kTractor] = M_canvas_view;
+    RigFrames frames;
+    frames[Unit::kTractor][0] = frame;
+    return Render(Projection::Plane(kSize.width, kSize.height), PlaneRig(), composition, frames,
+                  no_data, runner);
+}
+
+Matrix3d TurnAndShift(double turn_rad, double dx, double dy) {
+    Matrix3d m;
+    m << std::cos(turn_rad), -std::sin(turn_rad), dx, std::sin(turn_rad), std::cos(turn_rad), dy, 0,
+        0, 1;
+    return m;
+}
+
+TEST(PanoramaRendererTest, APlaneLeftWhereItIsIsCopiedBitForBit) {
+    const cv::Mat1b luma = tests::Texture(kSize, 5);
+    Nv12Picture picture(luma);
+    cv::RNG(6).fill(picture.chroma(), cv::RNG::UNIFORM, 0, 256);
+    const PanoramaPicture panorama = RenderPlane(Matrix3d::Identity(), picture.frame());
+    EXPECT_EQ(cv::norm(panorama.y(), luma, cv::NORM_INF), 0);
+    for (int y = 0; y < kSize.height / 2; ++y) {
+        for (int x = 0; x < kSize.width / 2; ++x) {
+            // The outermost chroma samples lie between two luma pixels, one of them outside.
+            ASSERT_EQ(panorama.u()(y, x), picture.chroma()(y, 2 * x)) << x << ' ' << y;
+            ASSERT_EQ(panorama.v()(y, x), picture.chroma()(y, 2 * x + 1)) << x << ' ' << y;
+        }
+    }
+}
+
+class MovedPlaneTest : public testing::TestWithParam<std::array<double, 3>> {};
+
+TEST_P(MovedPlaneTest, AgreesWithOpenCvsRemap) {
+    const auto [turn_rad, dx, dy] = GetParam();
+    const Matrix3d m = TurnAndShift(turn_rad, dx, dy);
+    const cv::Mat1b luma = tests::SineTexture(7).Shifted(kSize, 0, 0);
+    const PanoramaPicture panorama = RenderPlane(m, Nv12Picture(luma).frame());
+
+    cv::Mat1f map_x(kSize);
+    cv::Mat1f map_y(kSize);
+    const Matrix3d inverse = m.inverse();
+    for (int y = 0; y < kSize.height; ++y) {
+        for (int x = 0; x < kSize.width; ++x) {
+            const Vector2d from = (inverse * Eigen::Vector3d(x, y, 1)).hnormalized();
+            map_x(y, x) = static_cast<float>(from.x());
+            map_y(y, x) = static_cast<float>(from.y());
+        }
+    }
+    cv::Mat1b expected;
+    cv::remap(luma, expected, map_x, map_y, cv::INTER_LINEAR);
+    int compared = 0;
+    for (int y = 0; y < kSize.height; ++y) {
+        for (int x = 0; x < kSize.width; ++x) {
+            // Distance into the picture from its nearest edge.
+            const double depth =
+                std::min<double>({map_x(y, x), map_y(y, x), kSize.width - 1.0 - map_x(y, x),
+                                  kSize.height - 1.0 - map_y(y, x)});
+            if (depth > 2) {
+                ASSERT_NEAR(panorama.y()(y, x), expected(y, x), 1) << x << ' ' << y;
+                ++compared;
+            }
+            if (depth < -2) {
+                ASSERT_EQ(panorama.y()(y, x), 0) << "nothing is shifted in at " << x << ' ' << y;
+                ASSERT_EQ(panorama.u()(y / 2, x / 2), 128);
+            }
+        }
+    }
+    EXPECT_GT(compared, kSize.area() / 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(TurnsAndShifts, MovedPlaneTest,
+                         testing::Values(std::array{0.0, 17.0, -9.0}, std::array{0.0, 3.25, 2.75},
+                                         std::array{0.05, -4.3, 6.1}, std::array{-0.4, 20.5, 40.5},
+                                         std::array{0.0, 96.0, 0.5}));
+
+TEST(PanoramaRendererTest, AMissingCameraGivesThePatternOrBlackAndNeverStalePixels) {
+    const PanoramaPicture pattern = RenderPlane(Matrix3d::Identity(), {}, NoData::kPattern);
+    const PanoramaPicture black = RenderPlane(Matrix3d::Identity(), {}, NoData::kBlack);
+    EXPECT_EQ(cv::countNonZero(black.y()), 0);
+    cv::Mat1b dark;
+    cv::Mat1b light;
+    cv::compare(pattern.y(), 40, dark, cv::CMP_EQ);
+    cv::compare(pattern.y(), 72, light, cv::CMP_EQ);
+    EXPECT_EQ(cv::countNonZero(dark) + cv::countNonZero(light), kSize.area());
+    EXPECT_GT(cv::countNonZero(dark), kSize.area() / 3);
+    EXPECT_GT(cv::countNonZero(light), kSize.area() / 3);
+    for (const PanoramaPicture* picture : {&pattern, &black}) {
+        EXPECT_EQ(cv::countNonZero(picture->u() != 128), 0);
+        EXPECT_EQ(cv::countNonZero(picture->v() != 128), 0);
+    }
+}
+
+TEST(PanoramaRendererTest, TwoPlanesShowEachUnitOnItsSideAndABlendInTheStripBetween) {
+    SerialRunner runner;
+    const Projection canvas = Projection::Plane(320, kSize.height);
+    Composition composition;
+    composition.M_canvas_view[Unit::kTrailer] = TurnAndShift(0, 118, 0);
+    const Nv12Picture left(cv::Mat1b(kSize, std::uint8_t{60}));
+    const Nv12Picture right(cv::Mat1b(kSize, std::uint8_t{180}));
+    RigFrames frames;
+    frames[Unit::kTractor][0] = left.frame();
+    frames[Unit::kTrailer][0] = right.frame();
+    const PanoramaPicture panorama =
+        Render(canvas, PlaneRig(true), composition, frames, NoData::kPattern, runner);
+    const int seam = (118 + 201) / 2;
+    for (int y = 0; y < kSize.height; ++y) {
+        EXPECT_EQ(panorama.y()(y, 5), 60);
+        EXPECT_EQ(panorama.y()(y, seam - 24), 60);
+        EXPECT_EQ(panorama.y()(y, seam + 24), 180);
+        EXPECT_EQ(panorama.y()(y, 315), 180);
+        EXPECT_NEAR(panorama.y()(y, seam), 120, 35);
+        for (int x = 1; x < 320; ++x) ASSERT_GE(panorama.y()(y, x), panorama.y()(y, x - 1)) << x;
+    }
+}
+
+TEST(PanoramaRendererTest, WhatTheOtherUnitSeesTooFillsTheGapOfAMissingCamera) {
+    SerialRunner runner;
+    RigFrames frames;
+    const Nv12Picture here(cv::Mat1b(kSize, std::uint8_t{90}));
+    frames[Unit::kTrailer][0] = here.frame();
+    Composition composition;
+    composition.M_canvas_view[Unit::kTrailer] = TurnAndShift(0, 100, 0);
+    const PanoramaPicture panorama = Render(Projection::Plane(302, kSize.height), PlaneRig(true),
+                                            composition, frames, NoData::kPattern, runner);
+    EXPECT_EQ(panorama.y()(50, 290), 90);
+    EXPECT_EQ(panorama.y()(50, 170), 90);
+    const int lost = panorama.y()(50, 30);
+    EXPECT_TRUE(lost == 40 || lost == 72) << lost;
+}
+
+TEST(PanoramaRendererTest, GainsBrightenACameraAndKeepGreyGrey) {
+    SerialRunner runner;
+    const Rig rig = PlaneRig();
+    ComposedMap map(Projection::Plane(kSize.width, kSize.height), rig, {});
+    map.Build({}, runner);
+    const Nv12Picture picture(cv::Mat1b(kSize, std::uint8_t{100}), 128, 148);
+    RigFrames frames;
+    frames[Unit::kTractor][0] = picture.frame();
+    PanoramaRenderer renderer;
+    const auto rendered = [&](float gain) {
+        CameraGains gains;
+        gains[Unit::kTractor].fill(gain);
+        renderer.SetGains(gains);
+        PanoramaPicture panorama(kSize);
+        renderer.Render(map, frames, NoData::kBlack, panorama.planes(), runner);
+        return std::array<int, 3>{panorama.y()(50, 50), panorama.u()(20, 20), panorama.v()(20, 20)};
+    };
+    EXPECT_EQ(rendered(1.0F), (std::array{100, 128, 148}));
+    EXPECT_EQ(rendered(1.5F), (std::array{150, 128, 158}));
+    EXPECT_EQ(rendered(3.9F), (std::array{255, 128, 206}));
+    EXPECT_EQ(rendered(9.0F), (std::array{100, 128, 148})) << "no gain that a camera could need";
+    EXPECT_EQ(rendered(std::numeric_limits<float>::quiet_NaN()), (std::array{100, 128, 148}));
+}
+
+class RingRigTest : public testing::Test {
+ protected:
+    RingRigTest() {
+        rig_[Unit::kTractor] = UnitGeometry::Ring(canvas_, tests::LevelCameras(3, 1.2, 0), {});
+        rig_[Unit::kTrailer] =
+            UnitGeometry::Ring(canvas_, tests::LevelCameras(3, 1.2, std::numbers::pi), {});
+        for (std::uint64_t i = 0; i < 6; ++i)
+            pictures_.emplace_back(tests::Texture({320, 200}, i), 90, 170);
+        for (std::size_t i = 0; i < 3; ++i) {
+            frames_[Unit::kTractor][i] = pictures_[i].frame();
+            frames_[Unit::kTrailer][i] = pictures_[i + 3].frame();
+        }
+        composition_.M_canvas_view[Unit::kTrailer] = ToPose(canvas_, {{31, 0.02, -0.01}});
+        composition_.discrepancy.setConstant(1.7F);
+    }
+    PanoramaPicture RenderWith(TaskRunner& runner) {
+        return Render(canvas_, rig_, composition_, frames_, NoData::kPattern, runner);
+    }
+
+    Projection canvas_ = Projection::Cylinder(768, 132, 0.5);
+    Rig rig_;
+    std::vector<Nv12Picture> pictures_;
+    RigFrames frames_;
+    Composition composition_;
+};
+
+TEST_F(RingRigTest, TheOrderAndTheThreadsOfTheWorkDoNotChangeOneBit) {
+    SerialRunner serial;
+    ReversedRunner reversed;
+    ThreadedRunner threaded;
+    const PanoramaPicture first = RenderWith(serial);
+    EXPECT_TRUE(first == RenderWith(reversed));
+    EXPECT_TRUE(first == RenderWith(threaded));
+}
+
+TEST_F(RingRigTest, AMissingCameraLeavesThePatternInItsPartOnly) {
+    SerialRunner serial;
+    const PanoramaPicture all = RenderWith(serial);
+    frames_[Unit::kTractor][1] = {};
+    const PanoramaPicture without = RenderWith(serial);
+    const auto middle = static_cast<int>(canvas_.Centre().x());
+    const int lost = without.y()(66, middle);
+    EXPECT_TRUE(lost == 40 || lost == 72) << lost;
+    EXPECT_EQ(without.y()(66, 30), all.y()(66, 30));
+    cv::Mat1b near_seen;  // the pattern comes in whole blocks
+    cv::dilate(all.y(), near_seen, cv::Mat1b::ones(15, 15));
+    int hatched = 0;
+    for (int y = 0; y < canvas_.height_px; ++y) {
+        for (int x = 0; x < canvas_.width_px; ++x) {
+            const int grey = without.y()(y, x);
+            if (grey != all.y()(y, x)) hatched += grey == 40 || grey == 72 ? 1 : 0;
+            ASSERT_TRUE(near_seen(y, x) != 0 || grey == 0)
+                << "no camera ever saw " << x << ' ' << y;
+        }
+    }
+    EXPECT_GT(hatched, 500);
+}
+
+TEST_F(RingRigTest, SceneInfinitelyFarComesOutAtItsAzimuth) {
+    // One bright column in the front camera, 20 degrees to the left of its axis.
+    SerialRunner serial;
+    rig_[Unit::kTrailer].reset();
+    const UnitGeometry& geometry = *rig_[Unit::kTractor];
+    const double azimuth = 0.35;
+    Vector2d pixel;
+    ASSERT_TRUE(geometry.Project(1, {std::cos(azimuth), std::sin(azimuth), 0}, pixel));
+    cv::Mat1b luma(200, 320, std::uint8_t{50});
+    luma(cv::Rect(cvRound(pixel.x()) - 2, 0, 5, 200)).setTo(250);
+    const Nv12Picture picture(luma);
+    frames_[Unit::kTractor][1] = picture.frame();
+    const PanoramaPicture panorama = RenderWith(serial);
+    const Vector2d expected = canvas_.Pixel({std::cos(azimuth), std::sin(azimuth), 0});
+    EXPECT_GT(panorama.y()(cvRound(expected.y()), cvRound(expected.x())), 240);
+    EXPECT_EQ(panorama.y()(cvRound(expected.y()), cvRound(expected.x()) - 14), 50);
+    EXPECT_EQ(panorama.y()(cvRound(expected.y()), cvRound(expected.x()) + 14), 50);
+}
+
+}  // namespace
+}  // namespace hitchview::algo
