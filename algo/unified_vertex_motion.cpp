@@ -98,6 +98,19 @@ Vector2d Size(const Projection& picture) {
 
 }  // namespace
 
+Vector2d ToCanvas(const Projection& canvas, const Projection& view, const Composition& composition,
+                  Unit unit, const Vector3d& view_ray) {
+    const Vector2d view_px = view.Pixel(view_ray);
+    const Vector2d moved = view_px + Sample(Mesh(view), composition.view_offset[unit], view_px);
+    const Vector2d placed = canvas.Pixel(composition.M_canvas_view[unit] * view.Ray(moved));
+    const double moves = unit == Unit::kTractor ? -composition.kappa : 1 - composition.kappa;
+    const Mesh mesh(canvas);
+    constexpr int kSteps = 6;  // fixed point of shown = placed - moves e(shown)
+    Vector2d shown = placed;
+    for (int i = 0; i < kSteps; ++i) shown = placed - moves * Sample(mesh, composition.discrepancy, shown);
+    return shown;
+}
+
 /// What one frame set told, kept until it is emitted.
 struct UnifiedVertexMotion::Record {
     PerUnit<IntraMotion> intra;
@@ -249,7 +262,7 @@ void UnifiedVertexMotion::LayOut() {
 }
 
 bool UnifiedVertexMotion::Prime(const RigFrames& frames, TaskRunner& runner) {
-    if (!has_trailer()) return true;
+    if (!has_trailer() || !options_.stitch) return true;
     if (canvas_.IsRing()) placement_->Start(Matrix3d::Identity());
     Record& record = At(0);
     Analyse(frames, runner, record);
@@ -261,7 +274,7 @@ bool UnifiedVertexMotion::Prime(const RigFrames& frames, TaskRunner& runner) {
 const Composition* UnifiedVertexMotion::Step(const RigFrames& frames, TaskRunner& runner) {
     Record& record = At(analysed_);
     Analyse(frames, runner, record);
-    if (has_trailer()) MatchUnits(record);
+    if (has_trailer() && options_.stitch) MatchUnits(record);
     ++analysed_;
     if (analysed_ - emitted_ <= options_.lookahead_frames) return nullptr;
     return Emit(emitted_++);
@@ -361,7 +374,7 @@ const Composition* UnifiedVertexMotion::Emit(std::int64_t index) {
     }
     if (has_trailer()) PlaceTrailer(record);
     Compose(record);
-    if (has_trailer() && record.placed && options_.stitch) UpdateStitching(record);
+    if (has_trailer() && record.placed) UpdateStitching(record);
     composition_.discrepancy = stitching_.discrepancy();
     return &composition_;
 }

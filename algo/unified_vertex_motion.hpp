@@ -38,6 +38,11 @@ struct Composition {
     PerUnit<PoseOffset> stabilization;  ///< S of each unit, for reports
 };
 
+/// Where the composition shows a ray of `unit`'s view, canvas px. Inverts what the composed map does,
+/// to 0.01 px for fields that do not fold.
+Eigen::Vector2d ToCanvas(const Projection& canvas, const Projection& view, const Composition& composition,
+                         Unit unit, const Eigen::Vector3d& view_ray);
+
 /// Unified vertex motion in its live form (facts 4.6): causal, fixed memory, one step per frame set.
 /// A rig has a tractor and perhaps a trailer.
 class UnifiedVertexMotion {

@@ -1,6 +1,7 @@
 #include "algo/unit_geometry.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hitchview::algo {
 namespace {
@@ -24,6 +25,18 @@ Vector3d AlignmentSurface::Hit(const Vector3d& ray) const {
     double distance = radius_m;
     if (level.z() < 0) distance = std::min(distance, (ground_m - viewpoint_m) / level.z());
     return Vector3d{0, 0, viewpoint_m} + distance * level;
+}
+
+Vector3d AlignmentSurface::RayOf(const Vector3d& position_m, const Vector3d& direction) const {
+    // |position + s direction| = radius in the horizontal plane
+    const Vector2d p = position_m.head<2>();
+    const Vector2d d = direction.head<2>();
+    const double a = std::max(1e-12, d.squaredNorm());
+    const double b = p.dot(d);
+    const double c = p.squaredNorm() - radius_m * radius_m;
+    double s = (-b + std::sqrt(std::max(0.0, b * b - a * c))) / a;
+    if (direction.z() < 0) s = std::min(s, (ground_m - position_m.z()) / direction.z());
+    return position_m + s * direction - Vector3d{0, 0, viewpoint_m};
 }
 
 UnitGeometry UnitGeometry::Plane(int width_px, int height_px) {
@@ -59,6 +72,14 @@ bool UnitGeometry::Project(int camera, const Vector3d& ray, Vector2d& pixel) con
     const auto projected = c.model.Project(c.R_camera_unit * (surface_.Hit(ray) - c.position_m));
     if (projected) pixel = *projected;
     return projected.has_value();
+}
+
+std::optional<Vector3d> UnitGeometry::ViewRay(int camera, const Vector2d& pixel) const {
+    if (!view_.IsRing()) return pixel.homogeneous();
+    const MountedCamera& c = mounted(camera);
+    const auto direction = c.model.Unproject(pixel);
+    if (!direction) return std::nullopt;
+    return surface_.RayOf(c.position_m, c.R_camera_unit.transpose() * *direction);
 }
 
 void UnitGeometry::See(const Vector3d& ray, Sights& sights) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 
 #include "algo/camera_model.hpp"
@@ -20,6 +21,9 @@ struct AlignmentSurface {
 
     /// Point of the surface, in the unit frame, that `ray` of the view hits.
     [[nodiscard]] Eigen::Vector3d Hit(const Eigen::Vector3d& ray) const;
+    /// Ray of the view that hits the surface where `direction` from `position_m` does (a place inside).
+    [[nodiscard]] Eigen::Vector3d RayOf(const Eigen::Vector3d& position_m,
+                                        const Eigen::Vector3d& direction) const;
 };
 
 /// Where one camera sees a ray of its unit's view.
@@ -51,6 +55,9 @@ class UnitGeometry {
 
     /// Pixel of `camera` for a ray of the view, also outside the picture; false if it has none.
     [[nodiscard]] bool Project(int camera, const Eigen::Vector3d& ray, Eigen::Vector2d& pixel) const;
+
+    /// Ray of the view that a pixel of `camera` shows: inverts Project. Empty where the lens has none.
+    [[nodiscard]] std::optional<Eigen::Vector3d> ViewRay(int camera, const Eigen::Vector2d& pixel) const;
 
  private:
     struct MountedCamera {

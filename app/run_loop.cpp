@@ -38,6 +38,14 @@ hal::Checked<std::optional<calib::RigCalibration>> Calibration(const RigConfig& 
     return std::optional<calib::RigCalibration>(std::move(*loaded));
 }
 
+hal::Checked<hal::Done> MakeFolder(const std::filesystem::path& folder) {
+    if (folder.empty()) return hal::Done{};
+    std::error_code refused;
+    std::filesystem::create_directories(folder, refused);
+    if (refused) return folder.string() + ": " + refused.message();
+    return hal::Done{};
+}
+
 std::string CameraFailure(hal::Error error) {
     return std::string("a camera gives no more frames: ") + hal::ToString(error);
 }
@@ -124,11 +132,6 @@ class Run {
 
 hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& options,
                                 const std::atomic<bool>& stop, const ShownHook& hook) {
-    if (!options.out.empty()) {
-        std::error_code refused;
-        std::filesystem::create_directories(options.out, refused);
-        if (refused) return options.out.string() + ": " + refused.message();
-    }
     auto calibration = Calibration(config);
     if (!calibration) return calibration.error();
     const algo::UnifiedVertexMotionOptions motion = MotionOptions(config, options);
@@ -152,6 +155,7 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     for (const algo::Unit unit : algo::kUnits) {
         summary.cameras[unit] = static_cast<int>(config.units[unit].cameras.size());
     }
+    if (const auto made = MakeFolder(options.out); !made) return made.error();
     auto outputs = RunOutputs::Open(config, options, **board, summary, pipeline.format());
     if (!outputs) return outputs.error();
     const auto done = Run(**board, pipeline, **outputs, options, summary).Loop(stop, hook);

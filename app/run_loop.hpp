@@ -40,8 +40,9 @@ struct RunSummary {
 /// Sees every panorama that is shown, in order. Thread: the run loop's.
 using ShownHook = std::function<void(const ShownPanorama&, const Pipeline&)>;
 
-/// Opens the rig and makes panoramas until the sources end, `options.frames` were shown or `stop`
-/// is set. Error: what is wrong with rig, recordings, outputs or network, in words.
+/// Opens the rig and makes panoramas until the sources end, `options.frames` sets were taken or
+/// `stop` is set. Error: what is wrong with rig, recordings, outputs or network, in words; nothing
+/// is written when the rig or its recordings cannot be opened.
 hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& options,
                                 const std::atomic<bool>& stop, const ShownHook& hook = {});
 

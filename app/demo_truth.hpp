@@ -1,0 +1,70 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/pipeline.hpp"
+#include "drivers/simulated_rig.hpp"
+
+namespace hitchview::app {
+
+/// Measures panoramas of the simulated rig against what is true, from the map that was rendered:
+///   shake  far landmarks, second difference of where the canvas shows them over three frame sets,
+///          root mean square; beside it the same in each unit's own view, as it was taken
+///   seam   scene points on the seam that both units see: distance between the places where the
+///          canvas would show them from one and from the other unit
+/// Thread: the run loop's.
+class TruthMeter {
+ public:
+    TruthMeter(const drivers::SimulatedRig& rig, const RigGeometry& geometry);
+
+    void Observe(const ShownPanorama& shown, const Pipeline& pipeline);
+
+    struct Shake {
+        double input_px = 0;   ///< px of the canvas
+        double output_px = 0;
+        int samples = 0;
+    };
+    struct Seam {
+        double median_px = 0;
+        double p95_px = 0;
+        int samples = 0;
+    };
+    [[nodiscard]] Shake ShakeOf(algo::Unit unit) const;
+    /// Over both overlaps, of points between the two distances from the camera.
+    [[nodiscard]] Seam SeamOf(double from_m, double to_m) const;
+
+ private:
+    static constexpr int kLandmarks = 48;
+
+    /// Where one unit shows a landmark.
+    struct Sighting {
+        int camera = -1;  ///< -1: not seen
+        Eigen::Vector2d view_px = Eigen::Vector2d::Zero();
+        Eigen::Vector2d canvas_px = Eigen::Vector2d::Zero();
+    };
+    using Sightings = std::array<Sighting, kLandmarks>;
+    struct SeamSample {
+        double distance_m;
+        double error_px;
+    };
+
+    Sighting Sight(algo::Unit unit, int frame, const Eigen::Vector3d& p_world_m, bool behind_others,
+                   const algo::Composition& composition) const;
+    void ObserveShake(algo::Unit unit, int frame, const algo::Composition& composition);
+    void ObserveSeam(algo::Overlap overlap, int frame, const ShownPanorama& shown, const Pipeline& pipeline);
+    [[nodiscard]] int RigCamera(algo::Unit unit, int camera) const;
+
+    const drivers::SimulatedRig& rig_;
+    const RigGeometry& geometry_;
+    std::array<Eigen::Vector3d, kLandmarks> landmarks_;
+    algo::PerUnit<std::array<Sightings, 3>> sightings_;  // newest first
+    algo::PerUnit<double> input_squares_;
+    algo::PerUnit<double> output_squares_;
+    algo::PerUnit<int> shake_samples_;
+    std::vector<SeamSample> seam_;
+};
+
+}  // namespace hitchview::app
