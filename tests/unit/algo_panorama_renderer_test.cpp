@@ -114,6 +114,7 @@ TEST_P(MovedPlaneTest, AgreesWithOpenCvsRemap) {
     cv::Mat1b expected;
     cv::remap(luma, expected, map_x, map_y, cv::INTER_LINEAR);
     int compared = 0;
+    double brighter = 0;
     for (int y = 0; y < kSize.height; ++y) {
         for (int x = 0; x < kSize.width; ++x) {
             // Distance into the picture from its nearest edge.
@@ -122,6 +123,7 @@ TEST_P(MovedPlaneTest, AgreesWithOpenCvsRemap) {
                                   kSize.height - 1.0 - map_y(y, x)});
             if (depth > 2) {
                 ASSERT_NEAR(panorama.y()(y, x), expected(y, x), 1) << x << ' ' << y;
+                brighter += panorama.y()(y, x) - expected(y, x);
                 ++compared;
             }
             if (depth < -2) {
@@ -131,6 +133,7 @@ TEST_P(MovedPlaneTest, AgreesWithOpenCvsRemap) {
         }
     }
     EXPECT_GT(compared, kSize.area() / 3);
+    EXPECT_NEAR(brighter / compared, 0, 0.1) << "rounded to the nearest level, not down";
 }
 
 INSTANTIATE_TEST_SUITE_P(TurnsAndShifts, MovedPlaneTest,
@@ -176,6 +179,23 @@ TEST(PanoramaRendererTest, TwoPlanesShowEachUnitOnItsSideAndABlendInTheStripBetw
         EXPECT_NEAR(panorama.y()(y, seam), 120, 35);
         for (int x = 1; x < 320; ++x) ASSERT_GE(panorama.y()(y, x), panorama.y()(y, x - 1)) << x;
     }
+}
+
+TEST(PanoramaRendererTest, WhatThePreferredUnitDoesNotCoverComesFromTheOtherOne) {
+    SerialRunner runner;
+    Composition composition;
+    composition.M_canvas_view[Unit::kTractor] = TurnAndShift(0, 0, -24);
+    composition.M_canvas_view[Unit::kTrailer] = TurnAndShift(0, 100, 0);
+    const Nv12Picture left(cv::Mat1b(kSize, std::uint8_t{60}));
+    const Nv12Picture right(cv::Mat1b(kSize, std::uint8_t{180}));
+    RigFrames frames;
+    frames[Unit::kTractor][0] = left.frame();
+    frames[Unit::kTrailer][0] = right.frame();
+    const PanoramaPicture panorama = Render(Projection::Plane(302, kSize.height), PlaneRig(true),
+                                            composition, frames, NoData::kPattern, runner);
+    EXPECT_EQ(panorama.y()(50, 110), 60) << "both see it: the tractor's side of the seam";
+    EXPECT_EQ(panorama.y()(100, 110), 180) << "only the trailer sees it";
+    EXPECT_EQ(panorama.y()(100, 90), 0) << "nobody sees it";
 }
 
 TEST(PanoramaRendererTest, WhatTheOtherUnitSeesTooFillsTheGapOfAMissingCamera) {

@@ -112,6 +112,20 @@ TEST_P(EveryCanvasTest, NothingFoldsEvenWithWildPairs) {
         << "a field that never moves tests nothing";
 }
 
+TEST_P(EveryCanvasTest, NothingFoldsWhereTheDiscrepancyJumps) {
+    for (const double kappa : {0.0, 0.5, 1.0}) {
+        for (const double jump : {23.0, -23.0}) {
+            const auto field = std::make_unique<StitchingMotionField>(
+                canvas_, StitchingMotionFieldOptions{.kappa = kappa});
+            Converge(*field, PairsIn(canvas_, 400, 880, [&](const Vector2d& at) {
+                return Vector2d{at.x() < 640 ? jump : -jump, 0};
+            }));
+            EXPECT_GT(SmallestJacobian(*field, canvas_), 0) << kappa << ' ' << jump;
+            EXPECT_GT(field->discrepancy().cwiseAbs().maxCoeff(), 5);
+        }
+    }
+}
+
 TEST_P(EveryCanvasTest, NoPairsLeaveTheFieldAtRestAndResetForgets) {
     Converge(*field_, {}, 3);
     EXPECT_EQ(field_->discrepancy(), VertexField::Zero());
@@ -178,6 +192,27 @@ TEST(StitchingMotionFieldTest, OnARingTheOverlapMayLieAcrossTheEdge) {
         EXPECT_LT((Sample(field->mesh(), field->discrepancy(), {x, 120}) - e).norm(), 0.1) << x;
     }
     EXPECT_LT(Sample(field->mesh(), field->discrepancy(), {640, 120}).norm(), 0.05);
+}
+
+TEST(StitchingMotionFieldTest, WhereOnARingTheOverlapLiesDoesNotMatter) {
+    const auto field_at = [](double x0) {
+        const auto field =
+            std::make_unique<StitchingMotionField>(kRing, StitchingMotionFieldOptions{});
+        Converge(*field, PairsIn(kRing, x0, x0 + 200, [](const Vector2d& at) {
+            return Vector2d{5 + 0.01 * at.y(), 2};
+        }));
+        return field->discrepancy();
+    };
+    const VertexField middle = field_at(640.5);
+    const VertexField near_edge = field_at(640.5 - 14 * 40);
+    for (int row = 0; row < Mesh::kVertexRows; ++row) {
+        for (int col = 0; col < Mesh::kCols; ++col) {
+            const int moved = (col + 14) % Mesh::kCols;
+            const Eigen::Vector2f a = near_edge.col(Mesh::Index(row, col));
+            const Eigen::Vector2f b = middle.col(Mesh::Index(row, moved));
+            EXPECT_LT((a - b).norm(), 0.05F) << row << ' ' << col;
+        }
+    }
 }
 
 TEST(StitchingMotionFieldTest, ADiscrepancyBeyondTheLimitIsNoDiscrepancy) {
