@@ -54,6 +54,7 @@ void Pipeline::Start() {
 
 const ShownPanorama* Pipeline::Process(FrameSet&& set) {
     const StageTimer total(times_, Stage::kTotal);
+    ReleaseShown();
     FrameSet& held = held_[taken_++ % held_.size()];
     held = std::move(set);
     const algo::Composition* composition = nullptr;
@@ -65,12 +66,17 @@ const ShownPanorama* Pipeline::Process(FrameSet&& set) {
 }
 
 const ShownPanorama* Pipeline::Flush() {
+    ReleaseShown();
     const algo::Composition* composition = motion_.Flush();
     return composition != nullptr ? Show(*composition) : nullptr;
 }
 
-const ShownPanorama* Pipeline::Show(const algo::Composition& composition) {
+/// Before a new set comes: with the longest lookahead it goes where the one shown last was.
+void Pipeline::ReleaseShown() {
     if (shown_ > 0) held_[(shown_ - 1) % held_.size()] = FrameSet{};
+}
+
+const ShownPanorama* Pipeline::Show(const algo::Composition& composition) {
     const FrameSet& set = held_[shown_ % held_.size()];
     const algo::RigFrames frames = Borrow(set);
     {

@@ -49,6 +49,7 @@ class Pipeline {
     [[nodiscard]] const hal::FrameFormat& format() const { return format_; }
 
  private:
+    void ReleaseShown();
     const ShownPanorama* Show(const algo::Composition& composition);
     algo::PanoramaPlanes Planes(std::vector<std::uint8_t>& memory) const;
 
