@@ -83,7 +83,10 @@ void PanoramaPublisher::Send(Filled& filled) {
 
 void PanoramaPublisher::SendHitchAngles() {
     if (telemetry_ == nullptr) return;
-    while (const auto angle = telemetry_->Take()) Count(publisher_.Publish(*angle));
+    while (auto angle = telemetry_->Take()) {
+        angle->received_at += hal::Instant(start_ns_.load(std::memory_order_acquire));
+        Count(publisher_.Publish(*angle));
+    }
 }
 
 void PanoramaPublisher::Count(const hal::Result<hal::Done>& outcome) {

@@ -30,6 +30,10 @@ class PanoramaPublisher {
                       const hal::FrameFormat& format, const PanoramaPublisherOptions& options);
     ~PanoramaPublisher();
 
+    /// Before the telemetry first lets go of an angle: moment of the clock that is moment 0 of the
+    /// telemetry.
+    void StartRecording(hal::Instant start) { start_ns_.store(start.count(), std::memory_order_release); }
+
     struct Item {
         hal::FrameView picture;             ///< borrowed for the call
         hal::Instant captured_until{};
@@ -65,6 +69,7 @@ class PanoramaPublisher {
     hal::BlockingRing<hal::FramePool::Slot, kBuffers> free_;
     hal::BlockingRing<Filled, kBuffers> filled_;
     JpegEncoder encoder_;
+    std::atomic<hal::Instant::rep> start_ns_{0};
     std::atomic<std::uint64_t> dropped_{0};
     std::atomic<std::uint64_t> published_{0};
     std::atomic<std::uint64_t> refused_{0};

@@ -5,8 +5,8 @@
 namespace hitchview::app {
 
 struct ReplayOptions {
-    std::filesystem::path rig;
-    RunOptions run;
+    std::filesystem::path rig{};
+    RunOptions run{};
     bool metrics = false;  ///< track the written views again and measure them
 };
 

@@ -72,6 +72,7 @@ class Run {
     hal::Checked<hal::Done> Loop(const std::atomic<bool>& stop, const ShownHook& hook) {
         FrameSynchronizer synchronizer(board_.cameras());
         start_ = board_.clock().Now();
+        outputs_.Start(start_);
         std::uint64_t taken = 0;
         while (!stop && (!options_.frames || taken < static_cast<std::uint64_t>(*options_.frames))) {
             auto set = synchronizer.WaitSet();
@@ -115,7 +116,7 @@ class Run {
         for (const algo::Overlap overlap : algo::kOverlaps) {
             if (shown.composition->seams[overlap] == algo::SeamState::kLocked) ++summary_.locked_frames[overlap];
         }
-        const auto done = outputs_.Show(shown, pipeline_, summary_, start_);
+        const auto done = outputs_.Show(shown, pipeline_, summary_);
         if (done && hook) hook(shown, pipeline_);
         return done;
     }

@@ -12,10 +12,10 @@
 namespace hitchview::app {
 
 struct RunOptions {
-    std::filesystem::path out;            ///< folder for report and videos; empty: none are written
-    std::optional<int> frames;            ///< at most so many frame sets
-    std::optional<int> lookahead_frames;  ///< instead of the rig file's
-    std::optional<int> workers;           ///< instead of the rig file's
+    std::filesystem::path out{};            ///< folder for report and videos; empty: none are written
+    std::optional<int> frames{};            ///< at most so many frame sets
+    std::optional<int> lookahead_frames{};  ///< instead of the rig file's
+    std::optional<int> workers{};           ///< instead of the rig file's
     bool realtime = false;                ///< one frame set per period; late ones are dropped
     bool write_video = false;             ///< out/panorama.avi
     bool write_views = false;             ///< out/tractor.avi, out/trailer.avi

@@ -87,9 +87,13 @@ hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const R
     return hal::Done{};
 }
 
-hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& pipeline, const RunSummary& run,
-                                         hal::Instant start) {
-    if (publisher_) Publish(shown, run, start);
+void RunOutputs::Start(hal::Instant start) {
+    start_ = start;
+    if (publisher_) publisher_->StartRecording(start);
+}
+
+hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& pipeline, const RunSummary& run) {
+    if (publisher_) Publish(shown, run);
     const std::string full = "cannot write the video: ";
     if (panorama_ && !panorama_->Append(shown.picture)) return full + panorama_->Finish().error();
     for (const algo::Unit unit : algo::kUnits) {
@@ -99,13 +103,13 @@ hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& p
     return hal::Done{};
 }
 
-void RunOutputs::Publish(const ShownPanorama& shown, const RunSummary& run, hal::Instant start) {
+void RunOutputs::Publish(const ShownPanorama& shown, const RunSummary& run) {
     if (telemetry_) telemetry_->Advance(shown.captured_until);
     hal::FrameView picture = shown.picture;
-    picture.header.captured_at += start;
+    picture.header.captured_at += start_;
     publisher_->Append({.picture = picture,
-                        .captured_until = start + shown.captured_until,
-                        .status = Status(shown, run, start)});
+                        .captured_until = start_ + shown.captured_until,
+                        .status = Status(shown, run, start_)});
 }
 
 hal::Checked<hal::Done> RunOutputs::Finish() {

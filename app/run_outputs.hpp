@@ -19,9 +19,10 @@ class RunOutputs {
                                                           Board& board, const RunSummary& run,
                                                           const hal::FrameFormat& format);
 
-    /// `run`: counts so far. `start`: CLOCK_MONOTONIC moment of the recording's moment 0.
-    hal::Checked<hal::Done> Show(const ShownPanorama& shown, Pipeline& pipeline, const RunSummary& run,
-                                 hal::Instant start);
+    /// Once, before the first Show: CLOCK_MONOTONIC moment of the recording's moment 0.
+    void Start(hal::Instant start);
+    /// `run`: counts so far.
+    hal::Checked<hal::Done> Show(const ShownPanorama& shown, Pipeline& pipeline, const RunSummary& run);
     hal::Checked<hal::Done> Finish();
     [[nodiscard]] std::uint64_t dropped() const { return publisher_ ? publisher_->dropped() : 0; }
 
@@ -30,8 +31,9 @@ class RunOutputs {
     hal::Checked<hal::Done> OpenVideos(const RunOptions& options, const RunSummary& run, const hal::FrameFormat& format);
     hal::Checked<hal::Done> OpenNetwork(const RigConfig& config, const RunOptions& options, Board& board,
                                         const RunSummary& run, const hal::FrameFormat& format);
-    void Publish(const ShownPanorama& shown, const RunSummary& run, hal::Instant start);
+    void Publish(const ShownPanorama& shown, const RunSummary& run);
 
+    hal::Instant start_{};
     std::unique_ptr<VideoWriter> panorama_;
     algo::PerUnit<std::unique_ptr<VideoWriter>> views_;
     std::unique_ptr<hal::Publisher> network_;
