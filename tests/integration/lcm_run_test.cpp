@@ -1,0 +1,214 @@
+#include <gtest/gtest.h>
+#include <lcm/lcm.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <thread>
+
+#include "app/program.hpp"
+#include "drivers/lcm_url.hpp"
+#include "drivers/simulated_motion.hpp"
+#include "lcmtypes/hitchview_hitch_angle_t.h"
+#include "lcmtypes/hitchview_panorama_status_t.h"
+#include "tests/support/simulated_rig_files.hpp"
+#include "tests/support/temp_folder.hpp"
+
+// `hitchview run` beside programs of other people. Runs in a network namespace of its own
+// (tests/support/lcm_namespace.sh).
+namespace hitchview::app {
+namespace {
+
+using std::chrono::milliseconds;
+using tests::TemporaryFolder;
+
+constexpr int kFrames = 90;
+/// Frame sets that a busy machine may skip; with a sanitizer the count is not judged.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kMostDropped = kFrames;
+#else
+constexpr int kMostDropped = kFrames / 3;
+#endif
+
+/// Grey JPEG sequences of all eight cameras, one folder each: decoding them costs next to nothing.
+void RecordDrive(const TemporaryFolder& folder) {
+    drivers::SimulationOptions options{.frames = kFrames, .width_px = 320, .height_px = 180};
+    const auto created = drivers::SimulatedRig::Create(options);
+    ASSERT_TRUE(created) << created.error();
+    const auto& rig = created.value();
+    drivers::Renderer::Workspace workspace;
+    std::vector<std::uint8_t> nv12(hal::FrameBytes(rig->format()));
+    for (int camera = 0; camera < drivers::SimulatedRig::kCameras; ++camera) {
+        const std::filesystem::path pictures = folder / std::string(rig->camera(camera).name);
+        std::filesystem::create_directories(pictures);
+        for (int frame = 0; frame < kFrames; ++frame) {
+            rig->Render(camera, frame, workspace, nv12);
+            const cv::Mat grey(180, 320, CV_8U, nv12.data());
+            ASSERT_TRUE(cv::imwrite(pictures / (std::to_string(frame) + ".jpg"), grey));
+        }
+    }
+}
+
+/// bot_core_receiver as a child process.
+class Receiver {
+ public:
+    explicit Receiver(int frames)
+        : output_(popen((std::string(BOT_CORE_RECEIVER " '") + drivers::kDefaultLcmUrl +
+                         "' PANORAMA " + std::to_string(frames) + " 12")
+                            .c_str(),
+                        "r")) {
+        std::array<char, 256> line{};
+        EXPECT_STREQ(std::fgets(line.data(), line.size(), output_), "ready\n");
+    }
+    ~Receiver() { pclose(output_); }
+    Receiver(const Receiver&) = delete;
+    Receiver& operator=(const Receiver&) = delete;
+
+    struct Counts {
+        int received = -1, missing = -1, undecodable = -1;
+    };
+    Counts Finish() {
+        Counts counts;
+        EXPECT_EQ(std::fscanf(output_, "received %d missing %d undecodable %d", &counts.received,
+                              &counts.missing, &counts.undecodable),
+                  3);
+        return counts;
+    }
+
+ private:
+    std::FILE* output_;
+};
+
+/// What lcm-logger wrote: messages by channel, in order.
+std::map<std::string, std::vector<std::vector<std::uint8_t>>> ReadLog(const std::string& path) {
+    std::map<std::string, std::vector<std::vector<std::uint8_t>>> messages;
+    lcm_eventlog_t* const log = lcm_eventlog_create(path.c_str(), "r");
+    EXPECT_NE(log, nullptr);
+    if (log == nullptr) return messages;
+    while (lcm_eventlog_event_t* const event = lcm_eventlog_read_next_event(log)) {
+        const auto* const data = static_cast<const std::uint8_t*>(event->data);
+        messages[event->channel].emplace_back(data, data + event->datalen);
+        lcm_eventlog_free_event(event);
+    }
+    lcm_eventlog_destroy(log);
+    return messages;
+}
+
+/// The message with its memory freed; every field that is looked at here is a number.
+hitchview_hitch_angle_t DecodeAngle(const std::vector<std::uint8_t>& message) {
+    hitchview_hitch_angle_t angle{};
+    EXPECT_GT(
+        hitchview_hitch_angle_t_decode(message.data(), 0, static_cast<int>(message.size()), &angle),
+        0);
+    hitchview_hitch_angle_t_decode_cleanup(&angle);
+    return angle;
+}
+
+hitchview_panorama_status_t DecodeStatus(const std::vector<std::uint8_t>& message) {
+    hitchview_panorama_status_t status{};
+    EXPECT_GT(hitchview_panorama_status_t_decode(message.data(), 0,
+                                                 static_cast<int>(message.size()), &status),
+              0);
+    hitchview_panorama_status_t_decode_cleanup(&status);
+    return status;
+}
+
+class LcmRunTest : public testing::Test {
+ protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
+        tests::WriteSimulatedCalibration(*folder_, 320, 180);
+        RecordDrive(*folder_);
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+
+    void SetUp() override {
+        if (std::string(LCM_LOGGER).ends_with("NOTFOUND"))
+            GTEST_SKIP() << "lcm-logger is not installed";
+    }
+
+    /// `hitchview run` on the recorded drive with the usual canvas, logged to `log.lcm`.
+    void Run(const std::string& more) {
+        const std::string rig = tests::WriteText(
+            *folder_ / "rig.yaml",
+            "schema: 1\ncanvas: {projection: cylinder}\ncalibration: rig.calib.yaml\n" +
+                tests::SimulatedUnits(
+                    [](const std::string& name) { return "{replay: " + name + "}"; }) +
+                more);
+        std::filesystem::remove(*folder_ / "log.lcm");
+        Receiver receiver(kFrames);
+        {
+            const BackgroundProgram logger(
+                LCM_LOGGER,
+                {"--quiet", "--force",
+                 std::string("--lcm-url=") + drivers::kDefaultLcmUrl + "&recv_buf_size=8388608",
+                 *folder_ / "log.lcm"});
+            WaitForLog();
+            EXPECT_EQ(RunProgram(HITCHVIEW, {"run", "--rig", rig, "--out", *folder_ / "out"}), 0);
+            std::this_thread::sleep_for(milliseconds(500));
+        }
+        counts_ = receiver.Finish();
+        report_ = nlohmann::json::parse(test_support::FileText(*folder_ / "out/report.json"));
+        log_ = ReadLog(*folder_ / "log.lcm");
+    }
+
+    void ExpectEveryPanoramaArrived() {
+        const int dropped = report_.at("dropped");
+        EXPECT_LE(dropped, kMostDropped);
+        EXPECT_EQ(counts_.received, kFrames - dropped);
+        EXPECT_EQ(counts_.missing, dropped);
+        EXPECT_EQ(counts_.undecodable, 0);
+    }
+
+    static std::unique_ptr<TemporaryFolder> folder_;
+    Receiver::Counts counts_;
+    nlohmann::json report_;
+    std::map<std::string, std::vector<std::vector<std::uint8_t>>> log_;
+
+ private:
+    /// lcm-logger makes its file before it subscribes, at once.
+    static void WaitForLog() {
+        for (int i = 0; i < 100 && !std::filesystem::exists(*folder_ / "log.lcm"); ++i) {
+            std::this_thread::sleep_for(milliseconds(50));
+        }
+        std::this_thread::sleep_for(milliseconds(200));
+    }
+};
+
+std::unique_ptr<TemporaryFolder> LcmRunTest::folder_;
+
+TEST_F(LcmRunTest, EveryPanoramaAndTheHitchAngleArriveAtOtherPrograms) {
+    Run(std::string("can:\n  source: {simulated: true}\n") + tests::kSimulatedHitchAngle);
+    ExpectEveryPanoramaArrived();
+
+    const auto& statuses = log_["PANORAMA_STATUS"];
+    ASSERT_FALSE(statuses.empty());
+    const auto& angles = log_["HITCH_ANGLE"];
+    EXPECT_GE(angles.size(), 100U);  // 150 in three seconds
+    constexpr milliseconds kPeriod{20};
+    constexpr double kQuantum_rad = 0.1 / 180 * 3.14159265;
+    const drivers::Motion drive{drivers::SimulationOptions{}};
+    const std::int64_t start_ns = DecodeStatus(statuses.front()).capture_ns -
+                                  33'333'333LL * DecodeStatus(statuses.front()).sequence;
+    for (const auto& message : angles) {
+        const hitchview_hitch_angle_t angle = DecodeAngle(message);
+        const hal::Instant at = kPeriod * angle.sequence;
+        EXPECT_TRUE(angle.valid);
+        EXPECT_NEAR(angle.angle_rad, drive.HitchAngleAt(at), 0.51 * kQuantum_rad) << angle.sequence;
+        EXPECT_NEAR(static_cast<double>(angle.capture_ns - start_ns),
+                    static_cast<double>(at.count()), 1e6);
+    }
+}
+
+TEST_F(LcmRunTest, WithoutACanBusNoHitchAngleIsSent) {
+    Run("");
+    ExpectEveryPanoramaArrived();
+    EXPECT_GT(log_["PANORAMA_STATUS"].size(), 0U);
+    EXPECT_EQ(log_["HITCH_ANGLE"].size(), 0U);
+}
+
+}  // namespace
+}  // namespace hitchview::app
