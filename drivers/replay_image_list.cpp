@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <regex>
 #include <string_view>
 
 namespace hitchview::drivers {
@@ -66,14 +65,20 @@ struct Pattern {
     std::size_t digits = 1;
 };
 
+// One `%d` or `%0Nd` with N from 1 to 9, and no other percent sign.
 std::optional<Pattern> ParsePattern(const std::string& text) {
-    static const std::regex kForm("([^%]*)%(?:0([1-9]))?d([^%]*)");
     const fs::path path(text);
     const std::string name = path.filename().string();
-    std::smatch match;
-    if (!std::regex_match(name, match, kForm)) return std::nullopt;
-    Pattern pattern{path.parent_path(), match[1].str(), match[3].str()};
-    if (match[2].matched) pattern.digits = static_cast<std::size_t>(match[2].str().front() - '0');
+    const std::size_t percent = name.find('%');
+    if (percent == std::string::npos || percent != name.rfind('%')) return std::nullopt;
+    Pattern pattern{path.parent_path(), name.substr(0, percent), {}};
+    std::string_view number = std::string_view(name).substr(percent + 1);
+    if (number.size() > 2 && number[0] == '0' && number[1] != '0' && IsDigit(number[1])) {
+        pattern.digits = static_cast<std::size_t>(number[1] - '0');
+        number.remove_prefix(2);
+    }
+    if (!number.starts_with('d')) return std::nullopt;
+    pattern.after = number.substr(1);
     return pattern;
 }
 

@@ -210,7 +210,10 @@ TEST(ReplayCameraTest, WhatCannotBeOpenedSaysWhy) {
     EXPECT_THAT(WhyNot(folder / "text.avi"), HasSubstr("text.avi: not a video"));
     EXPECT_THAT(WhyNot(folder / "gap%d.png"), HasSubstr("number 2 is missing"));
     EXPECT_THAT(WhyNot(folder / "late%d.png"), HasSubstr("first number is 7"));
-    EXPECT_THAT(WhyNot(folder / "x%s.png"), HasSubstr("must have one number"));
+    for (const char* name : {"x%s.png", "%0d.png", "%00d.png", "%5d.png", "%012d.png", "%d%d.png",
+                             "%d%%.png", "%.png", "%", "%0", "%05"}) {
+        EXPECT_THAT(WhyNot(folder / name), HasSubstr("must have one number")) << name;
+    }
     EXPECT_THAT(WhyNot(folder / "x%d.png"), HasSubstr("no such files"));
 }
 
