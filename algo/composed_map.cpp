@@ -73,19 +73,17 @@ void ComposedMap::LocateCorner(const Composition& composition, Unit unit, int ro
 
     UnitGeometry::Sights sights;
     geometry.See(ray, sights);
-    covered_[unit][at] = 0;
     for (int i = 0; i < geometry.cameras(); ++i) {
         Source& source = sources_[static_cast<std::size_t>(first_source_[unit] + i)];
-        Vector2d pixel;
-        const bool sees = geometry.Project(i, ray, pixel);
-        source.corners[at] = {sees ? static_cast<float>(pixel.x()) : 0.0F,
-                              sees ? static_cast<float>(pixel.y()) : 0.0F, 0, sees};
+        source.corners[at].sees = false;
         source.share[at] = 0;
     }
+    covered_[unit][at] = 0;
     for (const CameraSight& sight : sights) {
-        sources_[static_cast<std::size_t>(first_source_[unit] + sight.camera)].share[at] =
-            static_cast<float>(sight.weight);
-        if (Inside(geometry, sight.camera, sight.pixel)) covered_[unit][at] = 1;
+        Source& source = sources_[static_cast<std::size_t>(first_source_[unit] + sight.camera)];
+        source.corners[at] = {static_cast<float>(sight.pixel.x()), static_cast<float>(sight.pixel.y()), 0, true};
+        source.share[at] = static_cast<float>(sight.weight);
+        if (sight.weight > 0 && Inside(geometry, sight.camera, sight.pixel)) covered_[unit][at] = 1;
     }
 }
 

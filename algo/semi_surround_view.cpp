@@ -20,7 +20,7 @@ int ReductionFor(const UnitGeometry& geometry, double scale) {
         UnitGeometry::Sights sights;
         for (double x = 0; x < view.width_px; x += 1) {
             geometry.See(view.Ray({x, view.horizon_y_px}), sights);
-            if (sights.empty()) continue;
+            if (sights.empty() || sights[0].weight < 0.5) continue;
             const int camera = sights[0].camera;
             if (!geometry.Project(camera, view.Ray({x, view.horizon_y_px}), a) ||
                 !geometry.Project(camera, view.Ray({x + 1, view.horizon_y_px}), b)) {
@@ -62,7 +62,7 @@ void SemiSurroundView::BuildMap() {
             const auto best = std::max_element(
                 sights.begin(), sights.end(),
                 [](const CameraSight& a, const CameraSight& b) { return a.weight < b.weight; });
-            if (best == sights.end()) continue;
+            if (best == sights.end() || best->weight <= 0) continue;
             const Eigen::Vector2d pixel = (best->pixel.array() + 0.5) / reduction_ - 0.5;
             const cv::Mat1b& reduced = reduced_[static_cast<std::size_t>(best->camera)];
             if (pixel.minCoeff() < 0 || pixel.x() > reduced.cols - 1.01 ||

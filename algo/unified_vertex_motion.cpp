@@ -49,13 +49,16 @@ StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double ka
                            .min_votes = 3,
                            .shrink_votes = 3};
     options.max_discrepancy_px = kMaxParallax_px;
+    // Round a vehicle near and far things mix in an overlap, and single measurements jump.
+    if (canvas.IsRing()) options.gain = 0.3;
     return options;
 }
 
 /// Bounds of a unit's offset: shift in px of the view, turn in rad.
 Vector3d Wall(const Projection& view, const UnifiedVertexMotionOptions& options) {
     constexpr double kDegree = std::numbers::pi / 180;
-    if (view.IsRing()) return {3 * kDegree * view.focal_px, 3 * kDegree, 3 * kDegree};
+    // A ring has no border sideways: there the bound is the lag of the heading in a bend.
+    if (view.IsRing()) return {8 * kDegree * view.focal_px, 3 * kDegree, 3 * kDegree};
     if (options.border == Border::kFree) return {0.28 * view.width_px, 0.28 * view.height_px, 0.06};
     const double margin = 0.5 * (1 - options.cropping);
     // The turn eats its share of the shift's margin: half the diagonal times the turn.
@@ -68,6 +71,10 @@ PathSmootherOptions SmootherOptions(const Projection& view, const UnifiedVertexM
     PathSmootherOptions smoother;
     smoother.lookahead_frames = options.lookahead_frames;
     smoother.wall = Wall(view, options);
+    if (view.IsRing()) {  // steering is slow and a vehicle's shake fast: no need to hold back longer
+        smoother.weakest_pull = 1e-3;
+        smoother.strongest_pull = 0.1;
+    }
     return smoother;
 }
 
@@ -196,6 +203,7 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
                                                       std::max(a.height_px(), b.height_px()),
                                                       ClassicalMatcherOptions{});
         TrailerPlacementOptions placement;
+        if (canvas.IsRing()) placement.gain = 0.3;
         placement.robust.max_sigma_px /= a.scale();
         placement.acquire.max_sigma_px /= a.scale();
         placement_ = std::make_unique<TrailerPlacement>(tractor_view_, *trailer_view_, placement);

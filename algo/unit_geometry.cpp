@@ -58,7 +58,7 @@ UnitGeometry UnitGeometry::Ring(const Projection& view, std::span<const CameraGe
         const CameraGeometry& camera = cameras[static_cast<std::size_t>(i)];
         geometry.cameras_[static_cast<std::size_t>(i)] = {
             camera.model, camera.T_unit_camera.linear().transpose(),
-            camera.T_unit_camera.translation()};
+            camera.T_unit_camera.translation(), std::cos(camera.model.max_theta_rad)};
     }
     return geometry;
 }
@@ -68,8 +68,14 @@ bool UnitGeometry::Project(int camera, const Vector3d& ray, Vector2d& pixel) con
         pixel = ray.hnormalized();
         return true;
     }
-    const MountedCamera& c = mounted(camera);
-    const auto projected = c.model.Project(c.R_camera_unit * (surface_.Hit(ray) - c.position_m));
+    return ProjectPoint(mounted(camera), surface_.Hit(ray), pixel);
+}
+
+bool UnitGeometry::ProjectPoint(const MountedCamera& camera, const Vector3d& p_unit_m, Vector2d& pixel) {
+    const Vector3d p_camera_m = camera.R_camera_unit * (p_unit_m - camera.position_m);
+    // Most cameras look elsewhere, and the lens model is dear.
+    if (p_camera_m.z() < camera.least_cosine * p_camera_m.norm()) return false;
+    const auto projected = camera.model.Project(p_camera_m);
     if (projected) pixel = *projected;
     return projected.has_value();
 }
@@ -88,20 +94,21 @@ void UnitGeometry::See(const Vector3d& ray, Sights& sights) const {
         sights.push_back({0, ray.hnormalized(), 1});
         return;
     }
+    const Vector3d p_unit_m = surface_.Hit(ray);
     double best = 0;
     for (int i = 0; i < camera_count_; ++i) {
         CameraSight sight{i, Vector2d::Zero(), 0};
-        if (!Project(i, ray, sight.pixel)) continue;
+        if (!ProjectPoint(mounted(i), p_unit_m, sight.pixel)) continue;
         sight.weight = SideMargin(mounted(i).model, sight.pixel);
-        if (sight.weight < 0) continue;
         best = std::max(best, sight.weight);
         sights.push_back(sight);
     }
     double sum = 0;
     for (CameraSight& sight : sights) {
-        sight.weight = std::max(0.0, sight.weight - best + kBlendWidth);
+        sight.weight = sight.weight < 0 ? 0 : std::max(0.0, sight.weight - best + kBlendWidth);
         sum += sight.weight;
     }
+    if (sum <= 0) return;
     for (CameraSight& sight : sights) sight.weight /= sum;
 }
 

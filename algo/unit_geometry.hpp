@@ -15,7 +15,7 @@ inline constexpr std::size_t kMaxCameras = 8;
 /// The surface on which the cameras of a ring are aligned: what lies on it shows no parallax.
 /// A vertical cylinder round the hitch axis, cut off below by the ground.
 struct AlignmentSurface {
-    double radius_m = 20;          ///< of the cylinder
+    double radius_m = 100;         ///< of the cylinder
     double viewpoint_m = 1.3;      ///< height of the panorama's viewpoint above the hitch point
     double ground_m = -0.4;        ///< height of the ground in the unit frame, below the viewpoint
 
@@ -29,7 +29,7 @@ struct AlignmentSurface {
 /// Where one camera sees a ray of its unit's view.
 struct CameraSight {
     int camera;             ///< index within the unit
-    Eigen::Vector2d pixel;  ///< of the camera's picture
+    Eigen::Vector2d pixel;  ///< of the camera's picture; perhaps outside it
     double weight;          ///< share in the view, 0..1; the shares of a ray add up to 1
 };
 
@@ -50,7 +50,8 @@ class UnitGeometry {
     [[nodiscard]] int camera_width_px(int camera) const { return mounted(camera).model.width_px; }
     [[nodiscard]] int camera_height_px(int camera) const { return mounted(camera).model.height_px; }
 
-    /// Cameras that see `ray` of the view. A plane's camera is given even outside its picture.
+    /// Cameras that have a pixel for `ray` of the view, also outside their picture: there their share
+    /// is 0 on a ring. The one camera of a plane always has all of it.
     void See(const Eigen::Vector3d& ray, Sights& sights) const;
 
     /// Pixel of `camera` for a ray of the view, also outside the picture; false if it has none.
@@ -64,8 +65,10 @@ class UnitGeometry {
         CameraModel model;
         Eigen::Matrix3d R_camera_unit;
         Eigen::Vector3d position_m;
+        double least_cosine;  ///< of the angle from the optical axis that the lens can see
     };
 
+    static bool ProjectPoint(const MountedCamera& camera, const Eigen::Vector3d& p_unit_m, Eigen::Vector2d& pixel);
     [[nodiscard]] const MountedCamera& mounted(int camera) const {
         return cameras_[static_cast<std::size_t>(camera)];
     }

@@ -25,17 +25,20 @@ CanvasConfig ReadCanvas(const YamlValue& value) {
     map["projection"].Read(kProjections, canvas.projection);
     const YamlValue horizon = map["horizon"];
     const YamlValue radius = map["radius_m"];
+    const YamlValue viewpoint = map["viewpoint_m"];
     const YamlValue ground = map["ground_m"];
     if (canvas.projection == Projection::kPlane) {
         ReadSize(map.Required("size_px"), kWidth, kHeight, canvas.size_px);
         horizon.Refuse("absent with projection plane");
         radius.Refuse("absent with projection plane");
+        viewpoint.Refuse("absent with projection plane");
         ground.Refuse("absent with projection plane");
     } else {
         canvas.size_px = {2048, 360};
         ReadSize(map["size_px"], kWidth, kHeight, canvas.size_px);
         horizon.Read({0, 1}, canvas.horizon);
         radius.Read({1, 1000}, canvas.radius_m);
+        viewpoint.Read({0.5, 10}, canvas.viewpoint_m);
         ground.Read({-3, 0}, canvas.ground_m);
     }
     map.Finish();

@@ -26,7 +26,7 @@ Vector2d SecondDifference(const algo::Projection& picture, const Vector2d& late,
 TruthMeter::TruthMeter(const SimulatedRig& rig, const RigGeometry& geometry) : rig_(rig), geometry_(geometry) {
     for (int i = 0; i < kLandmarks; ++i) {
         const double azimuth = 2 * std::numbers::pi * i / kLandmarks;
-        const double elevation = (i % 3 - 1) * 0.08;  // level with the horizon, above and below
+        const double elevation = (i % 3) * 0.08;  // level with the horizon and above
         landmarks_[static_cast<std::size_t>(i)] =
             SimulatedRig::kFar_m * Vector3d{std::cos(azimuth), std::sin(azimuth), elevation};
     }

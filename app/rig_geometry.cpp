@@ -25,12 +25,6 @@ hal::Checked<std::vector<algo::CameraGeometry>> CalibratedCameras(
     return cameras;
 }
 
-double MeanHeight(const calib::RigCalibration& calibration) {
-    double sum = 0;
-    for (const auto& [name, camera] : calibration.cameras) sum += camera.position_m.z();
-    return sum / static_cast<double>(calibration.cameras.size());
-}
-
 }  // namespace
 
 hal::Checked<RigGeometry> MakeRigGeometry(const RigConfig& config,
@@ -48,7 +42,7 @@ hal::Checked<RigGeometry> MakeRigGeometry(const RigConfig& config,
     }
     rig.canvas = algo::Projection::Cylinder(canvas.size_px.width_px, canvas.size_px.height_px, canvas.horizon);
     const algo::AlignmentSurface surface{.radius_m = canvas.radius_m,
-                                         .viewpoint_m = MeanHeight(*calibration),
+                                         .viewpoint_m = canvas.viewpoint_m,
                                          .ground_m = canvas.ground_m};
     for (const algo::Unit unit : algo::kUnits) {
         if (formats[unit].empty()) continue;

@@ -292,6 +292,7 @@ TEST(RigExampleTest, LoadsAndShowsTheDefaults) {
     const RigConfig defaults;
     EXPECT_EQ(rig.canvas.horizon, defaults.canvas.horizon);
     EXPECT_EQ(rig.canvas.radius_m, defaults.canvas.radius_m);
+    EXPECT_EQ(rig.canvas.viewpoint_m, defaults.canvas.viewpoint_m);
     EXPECT_EQ(rig.canvas.ground_m, defaults.canvas.ground_m);
     EXPECT_EQ(rig.stabilization.cropping, defaults.stabilization.cropping);
     EXPECT_EQ(rig.stitching.kappa, defaults.stitching.kappa);
