@@ -8,6 +8,13 @@ namespace hitchview::algo {
 using Eigen::Vector2d;
 using Eigen::Vector2f;
 
+namespace {
+
+constexpr float kFollowed_px = 1.0F;  ///< steps of this size and above get the whole gain
+constexpr float kNoiseGain = 0.2F;    ///< share of the gain for the smallest steps
+
+}  // namespace
+
 StitchingMotionField::StitchingMotionField(const Projection& canvas,
                                            const StitchingMotionFieldOptions& options)
     : canvas_(canvas), mesh_(canvas), options_(options), homography_(options.robust) {}
@@ -74,8 +81,11 @@ void StitchingMotionField::Blend(const CanvasPairs&) {
             const Vector2d measured = PlaneDiscrepancy(mesh_.Vertex(row, col)) +
                                       residual_field_.col(i).cast<double>();
             if (!(measured.norm() < options_.max_discrepancy_px)) continue;
-            const auto gain = static_cast<float>(options_.gain) * support;
-            field_.col(i) += gain * (measured.cast<float>() - field_.col(i));
+            const Vector2f innovation = measured.cast<float>() - field_.col(i);
+            // Small steps are matching noise and are averaged; large ones are the scene's and followed.
+            const float gain = std::clamp(innovation.norm() / kFollowed_px, kNoiseGain, 1.0F) *
+                               static_cast<float>(options_.gain) * support;
+            field_.col(i) += gain * innovation;
             support_(i) = std::max(support_(i), support);
         }
     }

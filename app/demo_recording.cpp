@@ -19,7 +19,7 @@ namespace {
 
 using drivers::SimulatedRig;
 
-constexpr int kQuality = 92;
+constexpr int kQuality = 85;
 constexpr int kMaxPictureBytes = 4'000'000;
 constexpr int kThreads = 2;
 

@@ -30,7 +30,10 @@ int Fail(const std::string& why) {
 hal::Checked<std::unique_ptr<SimulatedRig>> MakeDrive(const DemoOptions& options) {
     drivers::SimulationOptions simulation;
     simulation.frames = options.frames;
-    simulation.speed_mps = 6;
+    simulation.width_px = options.camera_width_px;
+    simulation.height_px = options.camera_width_px * 9 / 16;
+    simulation.speed_mps = 4;
+    simulation.curvature_per_m = 0.12;
     simulation.render_threads = 1;
     return SimulatedRig::Create(simulation);
 }
@@ -71,7 +74,9 @@ class Demo {
         run.truth = std::make_unique<TruthMeter>(rig_, geometry.value());
         auto summary = RunRig(config.value(), run_options, stop_, [&](const ShownPanorama& shown, const Pipeline& pipeline) {
             run.truth->Observe(shown, pipeline);
-            if (static_cast<int>(shown.picture.header.sequence) == chosen_) run.picture = ToBgr(shown.picture);
+            // The chosen one may have been dropped: then the next one that was shown.
+            const bool reached = static_cast<int>(shown.picture.header.sequence) >= chosen_;
+            if (reached && run.picture.empty()) run.picture = ToBgr(shown.picture);
         });
         if (!summary) return summary.error();
         run.summary = *summary;
@@ -79,6 +84,7 @@ class Demo {
     }
 
     std::string WriteSheetOf(const DemoRun& before, const DemoRun& after) const {
+        if (before.picture.empty() || after.picture.empty()) return "too few panoramas were shown for before_after.png";
         DemoSheet sheet;
         for (int i = 0; i < SimulatedRig::kCameras; ++i) {
             sheet.cameras.push_back(cv::imread(recording_.picture(i, chosen_).string()));

@@ -58,6 +58,10 @@ int main(int argc, char** argv) {
     demo_verb.add_flag("--headless", demo.headless, "open no window");
     demo_verb.add_option("--out", demo.out, "folder for recording, videos, picture and report")->capture_default_str();
     demo_verb.add_option("--frames", demo.frames, "frame sets, 30 per second")->check(CLI::Range(30, 3000))->capture_default_str();
+    demo_verb.add_option("--camera-width", demo.camera_width_px,
+                         "width of the simulated cameras, 16:9; 640 is enough for the default panorama and decodes faster")
+        ->check(CLI::IsMember({320, 640, 960, 1280, 1920}))
+        ->capture_default_str();
     demo_verb.add_option("--workers", demo.workers, "threads that share the work of a frame")
         ->check(CLI::Range(1, kMaxWorkers))
         ->capture_default_str();
