@@ -76,8 +76,7 @@ std::optional<Vector3d> UnprojectRadtan(const CameraModel& m, const Vector2d& di
         n -= step;
         if (step.squaredNorm() < 1e-24) break;
     }
-    if ((Radtan(m, n) - distorted).norm() > 1e-9 ||
-        std::atan(n.norm()) > m.max_theta_rad) {
+    if ((Radtan(m, n) - distorted).norm() > 1e-9 || std::atan(n.norm()) > m.max_theta_rad) {
         return std::nullopt;
     }
     return Vector3d{n.x(), n.y(), 1}.normalized();
@@ -108,7 +107,8 @@ std::string_view ToString(CameraModel::Kind kind) {
 }
 
 std::optional<CameraModel::Kind> CameraModelKind(std::string_view name) {
-    for (const auto kind : {CameraModel::Kind::kPinholeRadtan, CameraModel::Kind::kKannalaBrandt4}) {
+    for (const auto kind :
+         {CameraModel::Kind::kPinholeRadtan, CameraModel::Kind::kKannalaBrandt4}) {
         if (ToString(kind) == name) return kind;
     }
     return std::nullopt;

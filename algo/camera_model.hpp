@@ -11,7 +11,8 @@ namespace hitchview::algo {
 /// Lens of one camera. Camera frame: x right, y down, z along the optical axis. Pixel (0, 0) is the
 /// centre of the top-left pixel.
 ///
-/// kPinholeRadtan (OpenCV's `calib3d` model; k1 k2 p1 p2 k3), with a = x/z, b = y/z, r2 = a^2 + b^2:
+/// kPinholeRadtan (OpenCV's `calib3d` model; k1 k2 p1 p2 k3), with a = x/z, b = y/z, r2 = a^2 +
+/// b^2:
 ///     d  = 1 + k1 r2 + k2 r2^2 + k3 r2^3
 ///     a' = a d + 2 p1 a b + p2 (r2 + 2 a^2),  b' = b d + p1 (r2 + 2 b^2) + 2 p2 a b
 /// kKannalaBrandt4 (OpenCV's `fisheye` model; k1 k2 k3 k4), theta = angle from the optical axis:
@@ -34,15 +35,16 @@ struct CameraModel {
     /// The pixel may lie outside the image. Thread-safe.
     [[nodiscard]] std::optional<Eigen::Vector2d> Project(const Eigen::Vector3d& p_camera) const;
 
-    /// Unit-length direction that pixel (u, v) sees. Inverts Project by Newton's method to 1e-9 rad;
-    /// empty where the polynomial has no inverse within `max_theta_rad`. Thread-safe.
+    /// Unit-length direction that pixel (u, v) sees. Inverts Project by Newton's method to 1e-9
+    /// rad; empty where the polynomial has no inverse within `max_theta_rad`. Thread-safe.
     [[nodiscard]] std::optional<Eigen::Vector3d> Unproject(const Eigen::Vector2d& pixel) const;
 };
 
 std::string_view ToString(CameraModel::Kind kind);
 std::optional<CameraModel::Kind> CameraModelKind(std::string_view name);
 
-/// A camera fixed to its unit. Unit frame: origin in the hitch point, x forward, y left, z up, metres.
+/// A camera fixed to its unit. Unit frame: origin in the hitch point, x forward, y left, z up,
+/// metres.
 struct CameraGeometry {
     CameraModel model;
     Eigen::Isometry3d T_unit_camera = Eigen::Isometry3d::Identity();

@@ -26,7 +26,8 @@ double SmoothStep(double t) {
 
 }  // namespace
 
-ComposedMap::ComposedMap(const Projection& canvas, const PerUnit<std::optional<UnitGeometry>>& geometry,
+ComposedMap::ComposedMap(const Projection& canvas,
+                         const PerUnit<std::optional<UnitGeometry>>& geometry,
                          const SeamOptions& seam)
     : canvas_(canvas),
       canvas_mesh_(canvas),
@@ -40,7 +41,8 @@ ComposedMap::ComposedMap(const Projection& canvas, const PerUnit<std::optional<U
         covered_[unit].assign(corners, 0);
         if (!geometry[unit]) continue;
         for (int i = 0; i < geometry[unit]->cameras(); ++i) {
-            sources_.push_back({unit, i, std::vector<Corner>(corners), std::vector<float>(corners)});
+            sources_.push_back(
+                {unit, i, std::vector<Corner>(corners), std::vector<float>(corners)});
         }
     }
 }
@@ -65,7 +67,8 @@ void ComposedMap::LocateCorner(const Composition& composition, Unit unit, int ro
     const std::size_t at = At(row, col);
     const Vector2d canvas_px = CornerPixel(row, col);
     const double moves = unit == Unit::kTractor ? -composition.kappa : 1 - composition.kappa;
-    const Vector2d met = canvas_px + moves * Sample(canvas_mesh_, composition.discrepancy, canvas_px);
+    const Vector2d met =
+        canvas_px + moves * Sample(canvas_mesh_, composition.discrepancy, canvas_px);
     Vector3d ray = M_view_canvas_[unit] * canvas_.Ray(met);
     const Vector2d view_px = geometry.view().Pixel(ray);
     const Mesh view_mesh(geometry.view());
@@ -81,7 +84,8 @@ void ComposedMap::LocateCorner(const Composition& composition, Unit unit, int ro
     covered_[unit][at] = 0;
     for (const CameraSight& sight : sights) {
         Source& source = sources_[static_cast<std::size_t>(first_source_[unit] + sight.camera)];
-        source.corners[at] = {static_cast<float>(sight.pixel.x()), static_cast<float>(sight.pixel.y()), 0, true};
+        source.corners[at] = {static_cast<float>(sight.pixel.x()),
+                              static_cast<float>(sight.pixel.y()), 0, true};
         source.share[at] = static_cast<float>(sight.weight);
         if (sight.weight > 0 && Inside(geometry, sight.camera, sight.pixel)) covered_[unit][at] = 1;
     }
@@ -131,7 +135,8 @@ void ComposedMap::UpdateSeams(const Composition& composition) {
     trailer_left_ = middle(Unit::kTrailer) < middle(Unit::kTractor);
     const double seam = MiddleOfOverlap(0, cols_, known);
     // Without an overlap the seam lies half way between the two views.
-    SetSeam(Overlap::kRight, known ? seam : 0.5 * (middle(Unit::kTrailer) + middle(Unit::kTractor)), true);
+    SetSeam(Overlap::kRight, known ? seam : 0.5 * (middle(Unit::kTrailer) + middle(Unit::kTractor)),
+            true);
 }
 
 double ComposedMap::TractorShare(double x) const {
@@ -148,7 +153,8 @@ void ComposedMap::WeightRow(int row) {
     const bool two = (*geometry_)[Unit::kTrailer].has_value();
     for (int col = 0; col < cols_; ++col) {
         const std::size_t at = At(row, col);
-        const auto tractor = static_cast<float>(two ? TractorShare(CornerPixel(row, col).x()) : 1.0);
+        const auto tractor =
+            static_cast<float>(two ? TractorShare(CornerPixel(row, col).x()) : 1.0);
         PerUnit<float> share{{tractor, 1 - tractor}};
         if (selected_) {
             share[*selected_] = 1;
@@ -158,7 +164,8 @@ void ComposedMap::WeightRow(int row) {
                 if (covered_[Other(unit)][at] == 0) share[unit] = std::max(share[unit], kFiller);
             }
         }
-        for (Source& source : sources_) source.corners[at].weight = share[source.unit] * source.share[at];
+        for (Source& source : sources_)
+            source.corners[at].weight = share[source.unit] * source.share[at];
     }
 }
 

@@ -10,12 +10,12 @@
 namespace hitchview::algo {
 
 struct SeamOptions {
-    double half_width_px = 12;     ///< of the feathered strip
-    double tracking_gain = 0.08;   ///< share of the way to the middle of the overlap, per frame
+    double half_width_px = 12;    ///< of the feathered strip
+    double tracking_gain = 0.08;  ///< share of the way to the middle of the overlap, per frame
 };
 
-/// From canvas pixels straight to camera pixels: calibration, placement, stabilisation, stitching and
-/// seam in one map, exact at the corners of blocks of kBlock x kBlock canvas pixels, to be
+/// From canvas pixels straight to camera pixels: calibration, placement, stabilisation, stitching
+/// and seam in one map, exact at the corners of blocks of kBlock x kBlock canvas pixels, to be
 /// interpolated in between. So every output pixel is resampled once.
 class ComposedMap {
  public:
@@ -23,7 +23,7 @@ class ComposedMap {
 
     /// What one camera gives to one block corner.
     struct Corner {
-        float x = 0;        ///< camera pixel
+        float x = 0;  ///< camera pixel
         float y = 0;
         float weight = 0;   ///< share in the output; 0: not used here
         bool sees = false;  ///< x, y are meaningful
@@ -41,10 +41,15 @@ class ComposedMap {
     [[nodiscard]] int block_rows() const { return rows_ - 1; }
     [[nodiscard]] int block_cols() const { return cols_ - 1; }
     [[nodiscard]] int cameras() const { return static_cast<int>(sources_.size()); }
-    [[nodiscard]] Unit unit_of(int source) const { return sources_[static_cast<std::size_t>(source)].unit; }
-    [[nodiscard]] int camera_of(int source) const { return sources_[static_cast<std::size_t>(source)].camera; }
+    [[nodiscard]] Unit unit_of(int source) const {
+        return sources_[static_cast<std::size_t>(source)].unit;
+    }
+    [[nodiscard]] int camera_of(int source) const {
+        return sources_[static_cast<std::size_t>(source)].camera;
+    }
     [[nodiscard]] const Corner& corner(int source, int row, int col) const {
-        return sources_[static_cast<std::size_t>(source)].corners[static_cast<std::size_t>(row * cols_ + col)];
+        return sources_[static_cast<std::size_t>(source)]
+            .corners[static_cast<std::size_t>(row * cols_ + col)];
     }
     /// Column of the seam, canvas px.
     [[nodiscard]] const PerOverlap<double>& seam_px() const { return seam_px_; }

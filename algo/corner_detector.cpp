@@ -48,8 +48,8 @@ void CornerDetector::AddRow(const cv::Mat1b& image, int y) {
     for (int x = 1; x + 1 < image.cols; ++x) {
         const int gx = above[x + 1] - above[x - 1] + 2 * (here[x + 1] - here[x - 1]) +
                        below[x + 1] - below[x - 1];
-        const int gy = below[x - 1] - above[x - 1] + 2 * (below[x] - above[x]) + below[x + 1] -
-                       above[x + 1];
+        const int gy =
+            below[x - 1] - above[x - 1] + 2 * (below[x] - above[x]) + below[x + 1] - above[x + 1];
         const std::array<int, 3> now{gx * gx, gx * gy, gy * gy};
         for (std::size_t k = 0; k < 3; ++k) {
             sum[k][x] += now[k] - product[k][x];
@@ -112,7 +112,8 @@ void CornerDetector::KeepPeak(int x, int y) {
         peaks.pop_back();
     }
     peaks.push_back(peak);
-    for (std::size_t i = peaks.size() - 1; i > 0 && peaks[i].strength > peaks[i - 1].strength; --i) {
+    for (std::size_t i = peaks.size() - 1; i > 0 && peaks[i].strength > peaks[i - 1].strength;
+         --i) {
         std::swap(peaks[i], peaks[i - 1]);
     }
 }

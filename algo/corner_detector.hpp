@@ -14,10 +14,10 @@ struct Corner {
 };
 
 struct CornerDetectorOptions {
-    float min_strength = 4.0F;       ///< weaker corners are noise
-    float quality = 0.004F;          ///< and so are those below this share of the picture's best
-    int min_distance_px = 7;         ///< between corners, and to the features already there
-    int border_px = 10;              ///< no corner closer to the edge of the picture
+    float min_strength = 4.0F;  ///< weaker corners are noise
+    float quality = 0.004F;     ///< and so are those below this share of the picture's best
+    int min_distance_px = 7;    ///< between corners, and to the features already there
+    int border_px = 10;         ///< no corner closer to the edge of the picture
 };
 
 /// Shi-Tomasi corners, spread over a grid of buckets. Memory is taken at construction.

@@ -21,10 +21,12 @@ int SourceIndex(Unit unit, int camera) {
 double MeanAround(const CameraFrame& frame, float x, float y) {
     const int x0 = static_cast<int>(x) - kPatch / 2;
     const int y0 = static_cast<int>(y) - kPatch / 2;
-    if (x0 < 0 || y0 < 0 || x0 + kPatch > frame.width_px || y0 + kPatch > frame.height_px) return -1;
+    if (x0 < 0 || y0 < 0 || x0 + kPatch > frame.width_px || y0 + kPatch > frame.height_px)
+        return -1;
     int sum = 0;
     for (int r = 0; r < kPatch; ++r) {
-        const std::uint8_t* row = frame.luma + static_cast<std::ptrdiff_t>(y0 + r) * frame.luma_stride_bytes + x0;
+        const std::uint8_t* row =
+            frame.luma + static_cast<std::ptrdiff_t>(y0 + r) * frame.luma_stride_bytes + x0;
         for (int c = 0; c < kPatch; ++c) sum += row[c];
     }
     return sum / double{kPatch * kPatch};
@@ -32,7 +34,8 @@ double MeanAround(const CameraFrame& frame, float x, float y) {
 
 }  // namespace
 
-void ExposureGains::Collect(const ComposedMap& map, const RigFrames& frames, Table& sum, Table& count) const {
+void ExposureGains::Collect(const ComposedMap& map, const RigFrames& frames, Table& sum,
+                            Table& count) const {
     struct Seen {
         int source;
         double grey;
@@ -43,7 +46,8 @@ void ExposureGains::Collect(const ComposedMap& map, const RigFrames& frames, Tab
             seen.clear();
             for (int s = 0; s < map.cameras(); ++s) {
                 const ComposedMap::Corner& corner = map.corner(s, row, col);
-                const CameraFrame& frame = frames[map.unit_of(s)][static_cast<std::size_t>(map.camera_of(s))];
+                const CameraFrame& frame =
+                    frames[map.unit_of(s)][static_cast<std::size_t>(map.camera_of(s))];
                 if (!corner.sees || !frame.present()) continue;
                 const double grey = MeanAround(frame, corner.x, corner.y);
                 if (grey < kDark || grey > kBright) continue;

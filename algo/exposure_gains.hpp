@@ -11,8 +11,8 @@ namespace hitchview::algo {
 /// Brightness of the cameras relative to each other, from what neighbours both see: minimises, over
 /// the logarithms g of the gains,
 ///     sum_pairs n_ij (g_i + log I_ij - g_j - log I_ji)^2 + prior sum_i g_i^2
-/// with I_ij the mean grey of camera i where it shares the scene with j (Brown and Lowe, IJCV 2007),
-/// and follows the result slowly, so that nothing flickers.
+/// with I_ij the mean grey of camera i where it shares the scene with j (Brown and Lowe, IJCV
+/// 2007), and follows the result slowly, so that nothing flickers.
 class ExposureGains {
  public:
     explicit ExposureGains(double follow = 0.08) : follow_(follow) {}

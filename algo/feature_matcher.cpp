@@ -35,8 +35,8 @@ Nearest FindNearest(const PatchDescriptor& wanted, const Corners& corners) {
 }
 
 /// Detectors for the levels of a picture of this size; levels too small for it get a tiny one.
-std::array<CornerDetector, GreyPyramid::kMaxLevels> Detectors(int width, int height,
-                                                              const CornerDetectorOptions& options) {
+std::array<CornerDetector, GreyPyramid::kMaxLevels> Detectors(
+    int width, int height, const CornerDetectorOptions& options) {
     const auto at = [&](int l) {
         const int step = 1 << l;
         return CornerDetector((width + step - 1) / step, (height + step - 1) / step, options);
@@ -59,7 +59,8 @@ void ClassicalMatcher::DoGuide(const PerUnit<MatchView>& views, const Expectatio
 void ClassicalMatcher::GuideFrom(Unit unit, const PerUnit<MatchView>& views,
                                  const Expectation& expectation, ViewPairs& pairs) const {
     // Half of the room for each direction.
-    const std::size_t room = pairs.size() + (kMaxInterFeatures - pairs.size()) / (unit == Unit::kTractor ? 2 : 1);
+    const std::size_t room =
+        pairs.size() + (kMaxInterFeatures - pairs.size()) / (unit == Unit::kTractor ? 2 : 1);
     for (const Vector2f& feature : views[unit].features) {
         if (pairs.size() >= room) return;
         Vector2f expected;
@@ -75,7 +76,8 @@ bool ClassicalMatcher::Align(const PerUnit<MatchView>& views, Unit from, const V
                              const Vector2f& guess, int coarsest, ViewPair& pair) const {
     const MatchView& here = views[from];
     const MatchView& there = views[Other(from)];
-    const auto match = AlignPatch(*here.pyramid, *there.pyramid, at, guess, coarsest, options_.alignment);
+    const auto match =
+        AlignPatch(*here.pyramid, *there.pyramid, at, guess, coarsest, options_.alignment);
     if (!match || match->correlation < options_.min_correlation ||
         !Allowed(*there.mask, match->position_px)) {
         return false;
@@ -107,7 +109,8 @@ void ClassicalMatcher::DoAcquire(const PerUnit<MatchView>& views, const PerUnit<
         ViewPair pair{corner.position_px, match.position_px};
         // Corners of coarse levels are known to a few pixels only: align them, else keep them.
         ViewPair aligned;
-        if (Align(views, Unit::kTractor, pair.tractor_px, pair.trailer_px, 1, aligned)) pair = aligned;
+        if (Align(views, Unit::kTractor, pair.tractor_px, pair.trailer_px, 1, aligned))
+            pair = aligned;
         if (!pairs.push_back(pair)) return;
     }
 }

@@ -15,8 +15,8 @@ namespace hitchview::algo {
 /// What a matcher sees of one unit: the analysis view at one moment.
 struct MatchView {
     const GreyPyramid* pyramid;
-    const cv::Mat1b* mask;                        ///< non-zero where features may lie
-    std::span<const Eigen::Vector2f> features;    ///< tracked corners
+    const cv::Mat1b* mask;                      ///< non-zero where features may lie
+    std::span<const Eigen::Vector2f> features;  ///< tracked corners
 };
 
 /// The same scene point in both analysis views, pixels.
@@ -46,7 +46,8 @@ class FeatureMatcher {
         DoGuide(views, expectation, pairs);
     }
     /// Unguided: from nothing, between the parts of the two views that `regions` allow.
-    void Acquire(const PerUnit<MatchView>& views, const PerUnit<cv::Rect>& regions, ViewPairs& pairs) {
+    void Acquire(const PerUnit<MatchView>& views, const PerUnit<cv::Rect>& regions,
+                 ViewPairs& pairs) {
         DoAcquire(views, regions, pairs);
     }
 
@@ -58,10 +59,10 @@ class FeatureMatcher {
 };
 
 struct ClassicalMatcherOptions {
-    int guided_level = 2;            ///< pyramid level where the guided search starts
+    int guided_level = 2;  ///< pyramid level where the guided search starts
     float min_correlation = 0.70F;
     float max_round_trip_px = 0.7F;
-    int corners_per_level = 400;     ///< described when acquiring
+    int corners_per_level = 400;  ///< described when acquiring
     int descriptor_levels = 3;
     float max_distance_ratio = 0.85F;  ///< best descriptor distance / second best
     int max_distance = 90;             ///< of 256 bits

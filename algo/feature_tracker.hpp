@@ -10,9 +10,9 @@
 namespace hitchview::algo {
 
 struct FeatureTrackerOptions {
-    int features = 300;               ///< kept alive; at most kMaxFeatures
-    int coarsest_level = 3;           ///< pyramid level where the search starts
-    float max_round_trip_px = 0.5F;   ///< forward-backward check
+    int features = 300;              ///< kept alive; at most kMaxFeatures
+    int coarsest_level = 3;          ///< pyramid level where the search starts
+    float max_round_trip_px = 0.5F;  ///< forward-backward check
     float min_correlation = 0.60F;
     CornerDetectorOptions corners{};
     PatchAlignmentOptions alignment{};

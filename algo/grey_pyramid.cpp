@@ -15,11 +15,13 @@ int Mirror(int i, int n) {
 /// One row of vertical sums [1 4 6 4 1], with two mirrored entries on each side.
 void SumColumns(const cv::Mat1b& fine, int row, std::uint16_t* sums) {
     std::array<const std::uint8_t*, 5> r{};
-    for (int k = 0; k < 5; ++k) r[static_cast<std::size_t>(k)] = fine[Mirror(row + k - 2, fine.rows)];
+    for (int k = 0; k < 5; ++k)
+        r[static_cast<std::size_t>(k)] = fine[Mirror(row + k - 2, fine.rows)];
     std::uint16_t* out = sums + kMargin;
     const int n = fine.cols;
     for (int x = 0; x < n; ++x) {
-        out[x] = static_cast<std::uint16_t>(r[0][x] + r[4][x] + 4 * (r[1][x] + r[3][x]) + 6 * r[2][x]);
+        out[x] =
+            static_cast<std::uint16_t>(r[0][x] + r[4][x] + 4 * (r[1][x] + r[3][x]) + 6 * r[2][x]);
     }
     out[-1] = out[1];
     out[-2] = out[2];

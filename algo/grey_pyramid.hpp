@@ -22,7 +22,9 @@ class GreyPyramid {
     void Build();
 
     [[nodiscard]] int levels() const { return count_; }
-    [[nodiscard]] const cv::Mat1b& level(int l) const { return levels_[static_cast<std::size_t>(l)]; }
+    [[nodiscard]] const cv::Mat1b& level(int l) const {
+        return levels_[static_cast<std::size_t>(l)];
+    }
 
     friend void swap(GreyPyramid& a, GreyPyramid& b) noexcept {
         std::swap(a.levels_, b.levels_);

@@ -22,9 +22,13 @@ class MagsacCost {
  public:
     explicit MagsacCost(double max_sigma_px);
 
-    [[nodiscard]] double Weight(double squared_residual) const { return Read(weight_, squared_residual); }
+    [[nodiscard]] double Weight(double squared_residual) const {
+        return Read(weight_, squared_residual);
+    }
     /// In [0, 1]: 1 for an outlier.
-    [[nodiscard]] double Cost(double squared_residual) const { return Read(cost_, squared_residual); }
+    [[nodiscard]] double Cost(double squared_residual) const {
+        return Read(cost_, squared_residual);
+    }
     [[nodiscard]] double cutoff_px() const { return cutoff_px_; }
 
  private:
@@ -53,12 +57,12 @@ struct MagsacOptions {
 
 struct MagsacFit {
     Eigen::Matrix3d model;
-    int inliers;      ///< pairs with a residual below the cut-off
-    double mean_cost; ///< 0: all pairs agree, 1: none
+    int inliers;       ///< pairs with a residual below the cut-off
+    double mean_cost;  ///< 0: all pairs agree, 1: none
 };
 
-/// Fits one motion model to pairs of which many may be wrong. Seeded, bounded, takes no memory after
-/// construction: the same pairs give the same answer. Paper eq. (5): rho is MAGSAC++.
+/// Fits one motion model to pairs of which many may be wrong. Seeded, bounded, takes no memory
+/// after construction: the same pairs give the same answer. Paper eq. (5): rho is MAGSAC++.
 template <typename Model, std::size_t kCapacity>
 class MagsacEstimator {
  public:
@@ -136,7 +140,8 @@ class MagsacEstimator {
             for (std::size_t k = 0; k < pairs.size(); ++k) {
                 weights_[k] = cost_.Weight(SquaredResidual(best.model, pairs[k]));
             }
-            const auto model = Model::Fit({pairs.data(), pairs.size()}, {weights_.data(), pairs.size()});
+            const auto model =
+                Model::Fit({pairs.data(), pairs.size()}, {weights_.data(), pairs.size()});
             if (!model || !Improves(pairs, *model, best)) return;
         }
     }

@@ -10,8 +10,10 @@ using Eigen::Vector2f;
 
 Vector2d Sample(const Mesh& mesh, const VertexField& field, const Vector2d& pixel) {
     const double x = mesh.ring ? WrapColumn(pixel.x(), mesh.width_px) : pixel.x();
-    const double u = std::clamp((x - mesh.origin_px.x()) / mesh.cell_px.x(), 0.0, Mesh::kCols - 1e-6);
-    const double v = std::clamp((pixel.y() - mesh.origin_px.y()) / mesh.cell_px.y(), 0.0, Mesh::kRows - 1e-6);
+    const double u =
+        std::clamp((x - mesh.origin_px.x()) / mesh.cell_px.x(), 0.0, Mesh::kCols - 1e-6);
+    const double v =
+        std::clamp((pixel.y() - mesh.origin_px.y()) / mesh.cell_px.y(), 0.0, Mesh::kRows - 1e-6);
     const int col = static_cast<int>(u);
     const int row = static_cast<int>(v);
     const auto fx = static_cast<float>(u - col);

@@ -112,7 +112,8 @@ std::optional<Matrix3d> HomographyModel::Fit(std::span<const RayPair> pairs,
         right += weights[i] * (q.x() * a + q.y() * b);
     }
     const Eigen::LDLT<Eigen::Matrix<double, 8, 8>> ldlt(normal);
-    if (ldlt.info() != Eigen::Success || ldlt.vectorD().minCoeff() < 1e-9 * ldlt.vectorD().maxCoeff()) {
+    if (ldlt.info() != Eigen::Success ||
+        ldlt.vectorD().minCoeff() < 1e-9 * ldlt.vectorD().maxCoeff()) {
         return std::nullopt;
     }
     const Row h = ldlt.solve(right);

@@ -22,7 +22,8 @@ struct SimilarityModel {
     static constexpr int kMinimal = 2;
     static std::optional<Eigen::Matrix3d> Fit(std::span<const RayPair> pairs,
                                               std::span<const double> weights);
-    static double SquaredResidual(const Eigen::Matrix3d& m, const RayPair& pair, double px_per_unit);
+    static double SquaredResidual(const Eigen::Matrix3d& m, const RayPair& pair,
+                                  double px_per_unit);
 };
 
 /// Turn of all rays; 3 unknowns. Rays of unit length. Closed form (Kabsch; Umeyama, PAMI 1991).
@@ -30,7 +31,8 @@ struct RotationModel {
     static constexpr int kMinimal = 2;
     static std::optional<Eigen::Matrix3d> Fit(std::span<const RayPair> pairs,
                                               std::span<const double> weights);
-    static double SquaredResidual(const Eigen::Matrix3d& m, const RayPair& pair, double px_per_unit);
+    static double SquaredResidual(const Eigen::Matrix3d& m, const RayPair& pair,
+                                  double px_per_unit);
 };
 
 /// Homography of the plane with M(2, 2) = 1; 8 unknowns. Normalised linear solution (Hartley,
@@ -39,7 +41,8 @@ struct HomographyModel {
     static constexpr int kMinimal = 4;
     static std::optional<Eigen::Matrix3d> Fit(std::span<const RayPair> pairs,
                                               std::span<const double> weights);
-    static double SquaredResidual(const Eigen::Matrix3d& m, const RayPair& pair, double px_per_unit);
+    static double SquaredResidual(const Eigen::Matrix3d& m, const RayPair& pair,
+                                  double px_per_unit);
 };
 
 }  // namespace hitchview::algo

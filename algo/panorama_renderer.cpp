@@ -53,12 +53,17 @@ int ReadBilinear(const std::uint8_t* plane, int stride, const FixedPoint& x, con
     const std::uint8_t* b = a + stride;
     const int top = a[0] * (kOne - x.fraction) + a[kStep] * x.fraction;
     const int bottom = b[0] * (kOne - x.fraction) + b[kStep] * x.fraction;
-    return (top * (kOne - y.fraction) + bottom * y.fraction + (1 << (2 * kFixed - 1))) >> (2 * kFixed);
+    return (top * (kOne - y.fraction) + bottom * y.fraction + (1 << (2 * kFixed - 1))) >>
+           (2 * kFixed);
 }
 
-float ToChroma(float luma_coordinate) { return 0.5F * luma_coordinate - 0.25F; }
+float ToChroma(float luma_coordinate) {
+    return 0.5F * luma_coordinate - 0.25F;
+}
 
-std::uint8_t Round(float value) { return static_cast<std::uint8_t>(value + 0.5F); }
+std::uint8_t Round(float value) {
+    return static_cast<std::uint8_t>(value + 0.5F);
+}
 
 }  // namespace
 
@@ -86,7 +91,8 @@ struct PanoramaRenderer::BlockSource {
         const FixedPoint fy = Split(ToChroma(y), frame->height_px / 2 - 1);
         const int stride = frame->chroma_stride_bytes;
         u = lut->chroma[static_cast<std::size_t>(ReadBilinear<2>(frame->chroma, stride, fx, fy))];
-        v = lut->chroma[static_cast<std::size_t>(ReadBilinear<2>(frame->chroma + 1, stride, fx, fy))];
+        v = lut->chroma[static_cast<std::size_t>(
+            ReadBilinear<2>(frame->chroma + 1, stride, fx, fy))];
     }
 };
 
@@ -127,7 +133,8 @@ struct PanoramaRenderer::Block {
         for (int r = 0; r < height / 2; ++r) {
             InterpolateRow<kChromaBlock>(source.patch.x, r, xs);
             InterpolateRow<kChromaBlock>(source.patch.y, r, ys);
-            const auto to = static_cast<std::ptrdiff_t>(y / 2 + r) * out.chroma_stride_bytes + x / 2;
+            const auto to =
+                static_cast<std::ptrdiff_t>(y / 2 + r) * out.chroma_stride_bytes + x / 2;
             for (int c = 0; c < width / 2; ++c) {
                 const auto i = static_cast<std::size_t>(c);
                 source.Chroma(xs[i], ys[i], out.u[to + c], out.v[to + c]);
@@ -155,7 +162,8 @@ struct PanoramaRenderer::Block {
             std::uint8_t* to = out.y + static_cast<std::ptrdiff_t>(y + r) * out.y_stride_bytes + x;
             for (int c = 0; c < width; ++c) {
                 const auto i = static_cast<std::size_t>(c);
-                to[c] = weight[i] > 0 ? Round(sum[i] / weight[i]) : EmptyLuma(no_data, x + c, y + r);
+                to[c] =
+                    weight[i] > 0 ? Round(sum[i] / weight[i]) : EmptyLuma(no_data, x + c, y + r);
             }
         }
     }
@@ -182,7 +190,8 @@ struct PanoramaRenderer::Block {
                     weight[i] += ws[i];
                 }
             }
-            const auto to = static_cast<std::ptrdiff_t>(y / 2 + r) * out.chroma_stride_bytes + x / 2;
+            const auto to =
+                static_cast<std::ptrdiff_t>(y / 2 + r) * out.chroma_stride_bytes + x / 2;
             for (int c = 0; c < width / 2; ++c) {
                 const auto i = static_cast<std::size_t>(c);
                 out.u[to + c] = weight[i] > 0 ? Round(sum_u[i] / weight[i]) : kNeutral;
@@ -244,8 +253,8 @@ bool PanoramaRenderer::Gather(const ComposedMap& map, const RigFrames& frames, i
     return block.sources.size() == 1 && !block.camera_missing && block.sources[0].SeesAll();
 }
 
-void PanoramaRenderer::RenderBlockRow(const ComposedMap& map, const RigFrames& frames, NoData no_data,
-                                      const PanoramaPlanes& out, int row) const {
+void PanoramaRenderer::RenderBlockRow(const ComposedMap& map, const RigFrames& frames,
+                                      NoData no_data, const PanoramaPlanes& out, int row) const {
     Block block;
     block.y = row * kBlock;
     block.height = std::min(kBlock, out.height_px - block.y);

@@ -23,14 +23,16 @@ struct PanoramaPlanes {
 /// What stands where no camera gives a pixel.
 enum class NoData {
     kBlack,    ///< pure black: views before blending
-    kPattern,  ///< black where nothing is calibrated or shifted in; hatched where a camera is missing
+    kPattern,  ///< black where nothing is calibrated or shifted in; hatched where a camera is
+               ///< missing
 };
 
 /// Brightness of each camera relative to the others; multiplies grey and colour.
 using CameraGains = PerUnit<std::array<float, kMaxCameras>>;
 
 /// Makes the output picture: every pixel is read once, bilinear, straight from the camera frames;
-/// where cameras or units are blended, once from each of them. Bit-identical on any number of tasks.
+/// where cameras or units are blended, once from each of them. Bit-identical on any number of
+/// tasks.
 class PanoramaRenderer {
  public:
     PanoramaRenderer() { SetGains({{{{}, {}}}}); }
@@ -52,7 +54,8 @@ class PanoramaRenderer {
 
     void RenderBlockRow(const ComposedMap& map, const RigFrames& frames, NoData no_data,
                         const PanoramaPlanes& out, int row) const;
-    bool Gather(const ComposedMap& map, const RigFrames& frames, int row, int col, Block& block) const;
+    bool Gather(const ComposedMap& map, const RigFrames& frames, int row, int col,
+                Block& block) const;
 
     PerUnit<std::array<CameraLut, kMaxCameras>> luts_;
 };

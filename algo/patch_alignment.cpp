@@ -110,8 +110,7 @@ float Correlation(const Template& t, const Patch<kSide>& patch, const Moments& m
 Vector2f Step(const Template& t, const Patch<kSide>& patch, const Moments& m) {
     const float gain = t.deviation / std::max(1e-3F, m.deviation);
     const Patch<kSide> error = gain * (patch - m.mean) - t.grey;
-    return -(t.inverse_hessian *
-             Vector2f{(t.slope_x * error).sum(), (t.slope_y * error).sum()});
+    return -(t.inverse_hessian * Vector2f{(t.slope_x * error).sum(), (t.slope_y * error).sum()});
 }
 
 /// Moves `at` to where `image` looks like the template; false if it leaves or runs away.

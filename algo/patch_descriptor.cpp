@@ -13,8 +13,8 @@ struct Comparison {
     std::int8_t x0, y0, x1, y1;
 };
 
-/// Point pairs from an isotropic bell curve (Calonder's best pattern), drawn once from a fixed seed:
-/// the sum of three dice of -3..3.
+/// Point pairs from an isotropic bell curve (Calonder's best pattern), drawn once from a fixed
+/// seed: the sum of three dice of -3..3.
 constexpr std::array<Comparison, kComparisons> MakePattern() {
     std::uint32_t state = 2463534242U;
     const auto die = [&state] {

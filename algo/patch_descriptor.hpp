@@ -24,8 +24,8 @@ struct PatchDescriptor {
     }
 };
 
-/// The descriptor at `point_px` (pixels of `level`); compares pixels of the next coarser level, which
-/// is the smoothing that the comparisons need. Empty too near the edge, or on the last level.
+/// The descriptor at `point_px` (pixels of `level`); compares pixels of the next coarser level,
+/// which is the smoothing that the comparisons need. Empty too near the edge, or on the last level.
 std::optional<PatchDescriptor> DescribePatch(const GreyPyramid& pyramid, int level,
                                              const Eigen::Vector2f& point_px);
 

@@ -15,9 +15,8 @@ constexpr double kRelease = 0.05;
 PathSmoother::PathSmoother(const PathSmootherOptions& options) : options_(options) {
     for (int i = 0; i < kPulls; ++i) {
         const double share = static_cast<double>(i) / (kPulls - 1);
-        taps_[static_cast<std::size_t>(i)] =
-            Solve(options.weakest_pull *
-                  std::pow(options.strongest_pull / options.weakest_pull, share));
+        taps_[static_cast<std::size_t>(i)] = Solve(
+            options.weakest_pull * std::pow(options.strongest_pull / options.weakest_pull, share));
     }
 }
 
@@ -69,7 +68,8 @@ double PathSmoother::Apply(const Taps& taps, const Window& window, int component
                     taps.earlier * window.earlier_output(component) +
                     taps.velocity * velocity_(component);
     for (int j = 0; j < options_.lookahead_frames; ++j) {
-        offset += taps.ahead[static_cast<std::size_t>(j)] * window.ahead[static_cast<std::size_t>(j)](component);
+        offset += taps.ahead[static_cast<std::size_t>(j)] *
+                  window.ahead[static_cast<std::size_t>(j)](component);
     }
     return offset;
 }
@@ -80,12 +80,14 @@ Eigen::Vector3d PathSmoother::Next(const Window& window) {
     for (int c = 0; c < 3; ++c) {
         const double wall = options_.wall(c);
         const double nearness = std::abs(window.early_output(c)) / wall;
-        const double wanted = std::clamp((nearness - options_.free_share) / (1 - options_.free_share), 0.0, 1.0);
+        const double wanted =
+            std::clamp((nearness - options_.free_share) / (1 - options_.free_share), 0.0, 1.0);
         demand_(c) = std::max(wanted, demand_(c) * (1 - kRelease));
         const double at = demand_(c) * (kPulls - 1);
         const auto i = std::min<std::size_t>(static_cast<std::size_t>(at), kPulls - 2);
         const double share = at - static_cast<double>(i);
-        const double free = (1 - share) * Apply(taps_[i], window, c) + share * Apply(taps_[i + 1], window, c);
+        const double free =
+            (1 - share) * Apply(taps_[i], window, c) + share * Apply(taps_[i + 1], window, c);
         offset(c) = std::clamp(free, -wall, wall);
     }
     return offset;

@@ -10,14 +10,14 @@ namespace hitchview::algo {
 inline constexpr int kMaxLookahead = 10;  ///< frames
 
 struct PathSmootherOptions {
-    int lookahead_frames = 0;         ///< 0..kMaxLookahead
-    int horizon_frames = 20;          ///< beyond the frames seen, filled by the guess
-    double guess_damping = 0.85;      ///< of the velocity, per frame of the horizon
-    double velocity_smoothing = 0.15; ///< share of the newest motion in the velocity guess
-    double weakest_pull = 1e-5;       ///< pull to the path far from the wall
-    double strongest_pull = 1.0;      ///< at the wall
+    int lookahead_frames = 0;             ///< 0..kMaxLookahead
+    int horizon_frames = 20;              ///< beyond the frames seen, filled by the guess
+    double guess_damping = 0.85;          ///< of the velocity, per frame of the horizon
+    double velocity_smoothing = 0.15;     ///< share of the newest motion in the velocity guess
+    double weakest_pull = 1e-5;           ///< pull to the path far from the wall
+    double strongest_pull = 1.0;          ///< at the wall
     Eigen::Vector3d wall{1e9, 1e9, 1e9};  ///< bound of |offset|, per component
-    double free_share = 0.4;          ///< of the wall where the pull starts to grow
+    double free_share = 0.4;              ///< of the wall where the pull starts to grow
 };
 
 /// Causal smoothing of one path of three components. Each step minimises, over a receding horizon,
@@ -32,9 +32,9 @@ class PathSmoother {
 
     /// What is known when frame t is emitted; relative to the path at t.
     struct Window {
-        Eigen::Vector3d early_output;       ///< x_{t-1} - T_t
-        Eigen::Vector3d earlier_output;     ///< x_{t-2} - T_t
-        Eigen::Vector3d motion;             ///< T_t - T_{t-1}
+        Eigen::Vector3d early_output;                      ///< x_{t-1} - T_t
+        Eigen::Vector3d earlier_output;                    ///< x_{t-2} - T_t
+        Eigen::Vector3d motion;                            ///< T_t - T_{t-1}
         std::array<Eigen::Vector3d, kMaxLookahead> ahead;  ///< T_{t+j} - T_t, j = 1..lookahead
     };
 

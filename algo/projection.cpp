@@ -24,7 +24,9 @@ Matrix3d PlaneAbout(const Vector2d& centre, const Vector2d& shift, double turn) 
 
 }  // namespace
 
-double WrapColumn(double x, double width) { return x - width * std::floor((x + 0.5) / width); }
+double WrapColumn(double x, double width) {
+    return x - width * std::floor((x + 0.5) / width);
+}
 
 Projection Projection::Plane(int width_px, int height_px) {
     return {.kind = Kind::kPlane, .width_px = width_px, .height_px = height_px};
@@ -77,7 +79,8 @@ PoseOffset ToOffset(const Projection& projection, const Matrix3d& pose) {
     }
     const Vector2d centre = projection.Centre();
     const Vector2d shift = (pose * centre.homogeneous()).hnormalized() - centre;
-    return {Vector3d{shift.x(), shift.y(), std::atan2(pose(1, 0) - pose(0, 1), pose(0, 0) + pose(1, 1))}};
+    return {Vector3d{shift.x(), shift.y(),
+                     std::atan2(pose(1, 0) - pose(0, 1), pose(0, 0) + pose(1, 1))}};
 }
 
 Matrix3d ToPose(const Projection& projection, const PoseOffset& offset) {

@@ -17,9 +17,9 @@ struct Projection {
     Kind kind = Kind::kPlane;
     int width_px = 0;
     int height_px = 0;
-    double focal_px = 1;             ///< cylinder: pixels per radian
-    double horizon_y_px = 0;         ///< cylinder: row of elevation 0
-    double azimuth_centre_rad = 0;   ///< cylinder: azimuth of the middle column
+    double focal_px = 1;            ///< cylinder: pixels per radian
+    double horizon_y_px = 0;        ///< cylinder: row of elevation 0
+    double azimuth_centre_rad = 0;  ///< cylinder: azimuth of the middle column
 
     static Projection Plane(int width_px, int height_px);
     /// The whole ring. `horizon`: share of the height above elevation 0.

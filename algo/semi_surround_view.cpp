@@ -56,8 +56,7 @@ void SemiSurroundView::BuildMap() {
     UnitGeometry::Sights sights;
     for (int y = 0; y < camera_.rows; ++y) {
         for (int x = 0; x < camera_.cols; ++x) {
-            const Eigen::Vector2d view =
-                ToView({static_cast<float>(x), static_cast<float>(y)});
+            const Eigen::Vector2d view = ToView({static_cast<float>(x), static_cast<float>(y)});
             geometry_->See(geometry_->view().Ray(view), sights);
             const auto best = std::max_element(
                 sights.begin(), sights.end(),
@@ -81,8 +80,7 @@ void SemiSurroundView::BuildMap() {
 void SemiSurroundView::MaskJoints() {
     cv::Mat lowest;
     cv::Mat highest;
-    const cv::Mat window =
-        cv::Mat::ones(2 * kJointMargin_px + 1, 2 * kJointMargin_px + 1, CV_8U);
+    const cv::Mat window = cv::Mat::ones(2 * kJointMargin_px + 1, 2 * kJointMargin_px + 1, CV_8U);
     cv::erode(camera_, lowest, window);
     cv::dilate(camera_, highest, window);
     calibrated_mask_ = (lowest == highest) & (camera_ != kNoCamera);
@@ -106,12 +104,13 @@ void SemiSurroundView::Compose(const UnitFrames& frames, cv::Mat1b& view) {
             const cv::Mat1b& from = reduced_[camera[x]];
             const int fx = source[x].x & (kOne - 1);
             const int fy = source[x].y & (kOne - 1);
-            const std::uint8_t* a = from[source[x].y >> kFractionBits] + (source[x].x >> kFractionBits);
+            const std::uint8_t* a =
+                from[source[x].y >> kFractionBits] + (source[x].x >> kFractionBits);
             const std::uint8_t* b = a + from.step1();
             const int top = a[0] * (kOne - fx) + a[1] * fx;
             const int bottom = b[0] * (kOne - fx) + b[1] * fx;
-            out[x] = static_cast<std::uint8_t>((top * (kOne - fy) + bottom * fy + kOne * kOne / 2) >>
-                                               (2 * kFractionBits));
+            out[x] = static_cast<std::uint8_t>(
+                (top * (kOne - fy) + bottom * fy + kOne * kOne / 2) >> (2 * kFractionBits));
         }
     }
     UpdateMask(frames);
@@ -120,12 +119,14 @@ void SemiSurroundView::Compose(const UnitFrames& frames, cv::Mat1b& view) {
 void SemiSurroundView::Reduce(const CameraFrame& frame, cv::Mat1b& reduced) const {
     const int r = reduction_;
     for (int y = 0; y < reduced.rows; ++y) {
-        const std::uint8_t* in = frame.luma + static_cast<std::ptrdiff_t>(y) * r * frame.luma_stride_bytes;
+        const std::uint8_t* in =
+            frame.luma + static_cast<std::ptrdiff_t>(y) * r * frame.luma_stride_bytes;
         std::uint8_t* out = reduced[y];
         for (int x = 0; x < reduced.cols; ++x) {
             int sum = r * r / 2;
             for (int v = 0; v < r; ++v) {
-                const std::uint8_t* row = in + static_cast<std::ptrdiff_t>(v) * frame.luma_stride_bytes + x * r;
+                const std::uint8_t* row =
+                    in + static_cast<std::ptrdiff_t>(v) * frame.luma_stride_bytes + x * r;
                 for (int u = 0; u < r; ++u) sum += row[u];
             }
             out[x] = static_cast<std::uint8_t>(sum / (r * r));

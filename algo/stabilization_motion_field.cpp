@@ -8,7 +8,11 @@ using Eigen::Vector2d;
 
 StabilizationMotionField::StabilizationMotionField(const Projection& view,
                                                    const StabilizationMotionFieldOptions& options)
-    : view_(view), mesh_(view), options_(options), similarity_(options.robust), rotation_(options.robust) {}
+    : view_(view),
+      mesh_(view),
+      options_(options),
+      similarity_(options.robust),
+      rotation_(options.robust) {}
 
 void StabilizationMotionField::Estimate(const FeatureMotions& intra_features, IntraMotion& motion) {
     FitGlobal(intra_features, motion);
@@ -16,12 +20,14 @@ void StabilizationMotionField::Estimate(const FeatureMotions& intra_features, In
     if (motion.known) SpreadResiduals(intra_features, motion);
 }
 
-void StabilizationMotionField::FitGlobal(const FeatureMotions& intra_features, IntraMotion& motion) {
+void StabilizationMotionField::FitGlobal(const FeatureMotions& intra_features,
+                                         IntraMotion& motion) {
     pairs_.clear();
     for (const FeatureMotion& f : intra_features) {
         const Eigen::Vector3d early = view_.Ray(f.early_px);
         const Eigen::Vector3d late = view_.Ray(f.late_px);
-        pairs_.push_back(view_.IsRing() ? RayPair{early.normalized(), late.normalized()} : RayPair{early, late});
+        pairs_.push_back(view_.IsRing() ? RayPair{early.normalized(), late.normalized()}
+                                        : RayPair{early, late});
     }
     const std::optional<MagsacFit> fit =
         view_.IsRing() ? rotation_.Fit(pairs_, view_.focal_px) : similarity_.Fit(pairs_);
@@ -36,7 +42,8 @@ void StabilizationMotionField::SpreadResiduals(const FeatureMotions& intra_featu
     for (const FeatureMotion& f : intra_features) {
         const Vector2d global = view_.Pixel(motion.M_late_early * view_.Ray(f.early_px));
         const Vector2d residual = view_.Difference(f.late_px, global);
-        if (residual.norm() <= options_.max_residual_px) residuals_.push_back({f.late_px, residual});
+        if (residual.norm() <= options_.max_residual_px)
+            residuals_.push_back({f.late_px, residual});
     }
     PropagateToVertices(mesh_, {residuals_.data(), residuals_.size()}, options_.propagation,
                         motion.residual);

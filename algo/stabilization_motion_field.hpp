@@ -31,7 +31,8 @@ struct StabilizationMotionFieldOptions {
 /// fits neither better: it follows noise on the plane and is no motion of a cylinder).
 class StabilizationMotionField {
  public:
-    StabilizationMotionField(const Projection& view, const StabilizationMotionFieldOptions& options);
+    StabilizationMotionField(const Projection& view,
+                             const StabilizationMotionFieldOptions& options);
 
     void Estimate(const FeatureMotions& intra_features, IntraMotion& motion);
 

@@ -77,12 +77,14 @@ void StitchingMotionField::Blend(const CanvasPairs&) {
         for (int col = 0; col < Mesh::kVertexCols; ++col) {
             const int i = Mesh::Index(row, col);
             if (votes_(i) < static_cast<float>(options_.propagation.min_votes)) continue;
-            const float support = votes_(i) / (votes_(i) + static_cast<float>(options_.propagation.shrink_votes));
-            const Vector2d measured = PlaneDiscrepancy(mesh_.Vertex(row, col)) +
-                                      residual_field_.col(i).cast<double>();
+            const float support =
+                votes_(i) / (votes_(i) + static_cast<float>(options_.propagation.shrink_votes));
+            const Vector2d measured =
+                PlaneDiscrepancy(mesh_.Vertex(row, col)) + residual_field_.col(i).cast<double>();
             if (!(measured.norm() < options_.max_discrepancy_px)) continue;
             const Vector2f innovation = measured.cast<float>() - field_.col(i);
-            // Small steps are matching noise and are averaged; large ones are the scene's and followed.
+            // Small steps are matching noise and are averaged; large ones are the scene's and
+            // followed.
             const float gain = std::clamp(innovation.norm() / kFollowed_px, kNoiseGain, 1.0F) *
                                static_cast<float>(options_.gain) * support;
             field_.col(i) += gain * innovation;
@@ -101,8 +103,10 @@ void StitchingMotionField::Extend() {
                 const int i = Mesh::Index(row, col);
                 if (support_(i) > 0) continue;
                 const int left = mesh_.ring && col == 0 ? Mesh::kCols - 1 : std::max(col - 1, 0);
-                const int right = mesh_.ring && col == Mesh::kCols ? 1 : std::min(col + 1, Mesh::kCols);
-                const Vector2f sum = field_.col(Mesh::Index(row, left)) + field_.col(Mesh::Index(row, right)) +
+                const int right =
+                    mesh_.ring && col == Mesh::kCols ? 1 : std::min(col + 1, Mesh::kCols);
+                const Vector2f sum = field_.col(Mesh::Index(row, left)) +
+                                     field_.col(Mesh::Index(row, right)) +
                                      field_.col(Mesh::Index(std::max(row - 1, 0), col)) +
                                      field_.col(Mesh::Index(std::min(row + 1, Mesh::kRows), col));
                 field_.col(i) = sum / (4 + fade);
@@ -122,11 +126,13 @@ void StitchingMotionField::GuardFolds() {
             const int i = Mesh::Index(row, col);
             if (col < Mesh::kCols) {
                 const Vector2f across = field_.col(i + 1) - field_.col(i);
-                steepest = std::max(steepest, across.cwiseAbs().maxCoeff() / static_cast<float>(mesh_.cell_px.x()));
+                steepest = std::max(
+                    steepest, across.cwiseAbs().maxCoeff() / static_cast<float>(mesh_.cell_px.x()));
             }
             if (row < Mesh::kRows) {
                 const Vector2f down = field_.col(i + Mesh::kVertexCols) - field_.col(i);
-                steepest = std::max(steepest, down.cwiseAbs().maxCoeff() / static_cast<float>(mesh_.cell_px.y()));
+                steepest = std::max(
+                    steepest, down.cwiseAbs().maxCoeff() / static_cast<float>(mesh_.cell_px.y()));
             }
         }
     }

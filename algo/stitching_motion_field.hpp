@@ -15,22 +15,24 @@ inline constexpr std::size_t kMaxCanvasPairs = 768;
 using CanvasPairs = FixedVector<CanvasPair, kMaxCanvasPairs>;
 
 struct StitchingMotionFieldOptions {
-    double kappa = 0.5;            ///< who moves: 0 the trailer alone, 1 the tractor alone
-    double gain = 0.8;             ///< share of the newest measurement at a well supported vertex
+    double kappa = 0.5;  ///< who moves: 0 the trailer alone, 1 the tractor alone
+    double gain = 0.8;   ///< share of the newest measurement at a well supported vertex
     double max_discrepancy_px = 24;
-    int homography_inliers = 24;   ///< fewer pairs carry no global model
+    int homography_inliers = 24;  ///< fewer pairs carry no global model
     MagsacOptions robust{.max_sigma_px = 1.5, .max_iterations = 150};
     PropagationOptions propagation{};
-    double fade_per_cell = 0.35;   ///< pull to zero outside the overlap, against the neighbours' pull
-    int sweeps = 24;               ///< of the extension outside the overlap
-    double max_stretch = 0.4;      ///< fold guard: largest change of the field per cell, in cells
+    double fade_per_cell =
+        0.35;                  ///< pull to zero outside the overlap, against the neighbours' pull
+    int sweeps = 24;           ///< of the extension outside the overlap
+    double max_stretch = 0.4;  ///< fold guard: largest change of the field per cell, in cells
 };
 
 /// Stitching motion field (paper, same section), with the discrepancy e = trailer - tractor that is
 /// left on the canvas after the rigid placement: dominant plane by a homography, the rest as
-/// residual motion inside the ellipse; smoothed in time by a gain (facts 4.6), continued harmonically
-/// outside the overlap and faded to zero. Defined at the vertices of the canvas, at the point where
-/// both views meet: tractor pixels are read at c - kappa e(c), trailer pixels at c + (1 - kappa) e(c).
+/// residual motion inside the ellipse; smoothed in time by a gain (facts 4.6), continued
+/// harmonically outside the overlap and faded to zero. Defined at the vertices of the canvas, at
+/// the point where both views meet: tractor pixels are read at c - kappa e(c), trailer pixels at c
+/// + (1 - kappa) e(c).
 class StitchingMotionField {
  public:
     StitchingMotionField(const Projection& canvas, const StitchingMotionFieldOptions& options);
@@ -70,7 +72,7 @@ class StitchingMotionField {
     FixedVector<PointMotion, kMaxCanvasPairs> residuals_;
 
     bool plane_known_ = false;
-    Eigen::Matrix3d H_plane_ = Eigen::Matrix3d::Identity();  // meeting point -> meeting point + e
+    Eigen::Matrix3d H_plane_ = Eigen::Matrix3d::Identity();   // meeting point -> meeting point + e
     Eigen::Vector2d plane_origin_ = Eigen::Vector2d::Zero();  // unwraps the ring
     VertexField residual_field_ = VertexField::Zero();
     VertexScalars votes_ = VertexScalars::Zero();

@@ -3,7 +3,8 @@
 namespace hitchview::algo {
 
 /// Runs independent pieces of work, perhaps on several threads; the threads belong to the caller of
-/// `algo`. The pieces must not depend on their order: the result is the same on any number of threads.
+/// `algo`. The pieces must not depend on their order: the result is the same on any number of
+/// threads.
 class TaskRunner {
  public:
     virtual ~TaskRunner() = default;
@@ -11,7 +12,8 @@ class TaskRunner {
     /// Calls work(0) ... work(count - 1) and returns when all have ended.
     template <typename Work>
     void Run(int count, Work&& work) {
-        DoRun(count, [](void* context, int i) { (*static_cast<Work*>(context))(i); }, &work);
+        DoRun(
+            count, [](void* context, int i) { (*static_cast<Work*>(context))(i); }, &work);
     }
 
  private:

@@ -24,7 +24,8 @@ void TrailerPlacement::Start(const Matrix3d& M_tractor_trailer) {
 }
 
 void TrailerPlacement::Predict(const PerUnit<IntraMotion>& intra) {
-    pose_ = intra[Unit::kTractor].M_late_early * pose_ * intra[Unit::kTrailer].M_late_early.inverse();
+    pose_ =
+        intra[Unit::kTractor].M_late_early * pose_ * intra[Unit::kTrailer].M_late_early.inverse();
     inliers_ = {};
 }
 
@@ -39,14 +40,16 @@ std::optional<MagsacFit> TrailerPlacement::Fit(const PerOverlap<InterFeatures>& 
         }
     }
     const double scale = tractor_view_.focal_px;
-    if (acquire) return ring ? acquire_rotation_.Fit(pairs_, scale) : acquire_similarity_.Fit(pairs_);
+    if (acquire)
+        return ring ? acquire_rotation_.Fit(pairs_, scale) : acquire_similarity_.Fit(pairs_);
     return ring ? rotation_.Fit(pairs_, scale) : similarity_.Fit(pairs_);
 }
 
 bool TrailerPlacement::Correct(const PerOverlap<InterFeatures>& inter_features) {
     const auto fit = Fit(inter_features, false);
     if (!fit || fit->inliers < options_.min_inliers) return false;
-    const double gain = std::max(options_.gain, 1.0 / (1 + std::max(0, ++frames_since_acquired_ - 2)));
+    const double gain =
+        std::max(options_.gain, 1.0 / (1 + std::max(0, ++frames_since_acquired_ - 2)));
     const Matrix3d correction = fit->model * pose_.inverse();
     if (tractor_view_.IsRing()) {
         const PoseOffset offset{gain * ToOffset(tractor_view_, correction).value};
@@ -73,7 +76,8 @@ bool TrailerPlacement::Agrees(const InterFeature& feature, double limit_px) cons
     return tractor_view_.Difference(feature.tractor_px, expected).norm() <= limit_px;
 }
 
-void TrailerPlacement::CountInliers(const PerOverlap<InterFeatures>& inter_features, double limit_px) {
+void TrailerPlacement::CountInliers(const PerOverlap<InterFeatures>& inter_features,
+                                    double limit_px) {
     for (const Overlap overlap : kOverlaps) {
         inliers_[overlap] = static_cast<int>(
             std::count_if(inter_features[overlap].begin(), inter_features[overlap].end(),

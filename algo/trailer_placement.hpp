@@ -16,11 +16,11 @@ enum class SeamState { kNoOverlap, kReacquire, kCoast, kLocked };
 struct TrailerPlacementOptions {
     MagsacOptions robust{.max_sigma_px = 2.0, .max_iterations = 200};
     MagsacOptions acquire{.max_sigma_px = 4.0, .max_iterations = 500};
-    double gain = 0.7;             ///< share of the newest measurement, once settled
-    int settle_frames = 8;         ///< after an acquisition the gain falls from 1 to `gain`
+    double gain = 0.7;      ///< share of the newest measurement, once settled
+    int settle_frames = 8;  ///< after an acquisition the gain falls from 1 to `gain`
     int min_inliers = 12;
     int acquire_inliers = 16;
-    int coast_frames = 60;         ///< without matches before the overlap is searched from nothing
+    int coast_frames = 60;  ///< without matches before the overlap is searched from nothing
 };
 
 /// Where the trailer's view lies on the tractor's (facts 4.6, 4.7): the pose of rays, tractor from
@@ -35,8 +35,8 @@ class TrailerPlacement {
     void Start(const Eigen::Matrix3d& M_tractor_trailer);
     /// Carries the pose over from the early to the late frame.
     void Predict(const PerUnit<IntraMotion>& intra);
-    /// Corrects by the pairs of all overlaps at once: the trailer is one rigid body. `inliers` counts,
-    /// per overlap, the pairs that agree with the pose; `false` if too few agree.
+    /// Corrects by the pairs of all overlaps at once: the trailer is one rigid body. `inliers`
+    /// counts, per overlap, the pairs that agree with the pose; `false` if too few agree.
     bool Correct(const PerOverlap<InterFeatures>& inter_features);
     /// Replaces the pose by one fitted to unguided pairs; false if too few agree.
     bool Acquire(const PerOverlap<InterFeatures>& inter_features);

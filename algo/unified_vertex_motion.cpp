@@ -14,7 +14,8 @@ using Eigen::Vector3d;
 
 /// Pairs farther from the rigid placement than this are another thing, not parallax; canvas px.
 constexpr double kMaxParallax_px = 24;
-/// The per-vertex offset: share kept per frame, and its bound (shake is above 1 Hz, the road below).
+/// The per-vertex offset: share kept per frame, and its bound (shake is above 1 Hz, the road
+/// below).
 constexpr float kResidualKept = 0.80F;
 constexpr float kResidualBound_px = 2.0F;
 /// Offset kept per frame while the motion is unknown.
@@ -67,11 +68,13 @@ Vector3d Wall(const Projection& view, const UnifiedVertexMotionOptions& options)
             margin * view.height_px - 0.5 * turn * view.width_px, turn};
 }
 
-PathSmootherOptions SmootherOptions(const Projection& view, const UnifiedVertexMotionOptions& options) {
+PathSmootherOptions SmootherOptions(const Projection& view,
+                                    const UnifiedVertexMotionOptions& options) {
     PathSmootherOptions smoother;
     smoother.lookahead_frames = options.lookahead_frames;
     smoother.wall = Wall(view, options);
-    if (view.IsRing()) {  // steering is slow and a vehicle's shake fast: no need to hold back longer
+    if (view.IsRing()) {  // steering is slow and a vehicle's shake fast: no need to hold back
+                          // longer
         smoother.weakest_pull = 1e-3;
         smoother.strongest_pull = 0.1;
     }
@@ -114,7 +117,8 @@ Vector2d ToCanvas(const Projection& canvas, const Projection& view, const Compos
     const Mesh mesh(canvas);
     constexpr int kSteps = 6;  // fixed point of shown = placed - moves e(shown)
     Vector2d shown = placed;
-    for (int i = 0; i < kSteps; ++i) shown = placed - moves * Sample(mesh, composition.discrepancy, shown);
+    for (int i = 0; i < kSteps; ++i)
+        shown = placed - moves * Sample(mesh, composition.discrepancy, shown);
     return shown;
 }
 
@@ -135,14 +139,15 @@ class UnifiedVertexMotion::Guidance final : public Expectation {
  public:
     Guidance(const UnifiedVertexMotion& owner, Overlap overlap, int& candidates)
         : owner_(owner), overlap_(overlap), candidates_(candidates) {
-        const Matrix3d M_canvas_tractor = owner.M_canvas_tractor_ * owner.stabilizer_[Unit::kTractor][0];
+        const Matrix3d M_canvas_tractor =
+            owner.M_canvas_tractor_ * owner.stabilizer_[Unit::kTractor][0];
         M_canvas_view_[Unit::kTractor] = M_canvas_tractor;
         M_canvas_view_[Unit::kTrailer] = M_canvas_tractor * owner.placement_->M_tractor_trailer();
         if (owner.hitch_known_) {  // the field starts from the smoothed placement
             const Matrix3d smoothed = owner.hitch_pose_[0] * owner.raw_hitch_pose_.inverse();
-            M_canvas_view_[Unit::kTrailer] =
-                owner.M_canvas_tractor_ * smoothed * owner.M_canvas_tractor_.inverse() *
-                M_canvas_view_[Unit::kTrailer];
+            M_canvas_view_[Unit::kTrailer] = owner.M_canvas_tractor_ * smoothed *
+                                             owner.M_canvas_tractor_.inverse() *
+                                             M_canvas_view_[Unit::kTrailer];
         }
     }
 
@@ -153,8 +158,10 @@ class UnifiedVertexMotion::Guidance final : public Expectation {
         const Matrix3d& M_canvas_other = M_canvas_view_[Other(unit)];
         const Vector2d canvas_px = owner_.canvas_.Pixel(M_canvas_unit * ray);
         if (!InOverlap(canvas_px)) return false;
-        const Vector2d e = Sample(owner_.stitching_.mesh(), owner_.stitching_.discrepancy(), canvas_px);
-        const Vector2d there = unit == Unit::kTractor ? Vector2d(canvas_px + e) : Vector2d(canvas_px - e);
+        const Vector2d e =
+            Sample(owner_.stitching_.mesh(), owner_.stitching_.discrepancy(), canvas_px);
+        const Vector2d there =
+            unit == Unit::kTractor ? Vector2d(canvas_px + e) : Vector2d(canvas_px - e);
         const Unit opposite = Other(unit);
         const Vector2d expected =
             owner_.view(opposite).Pixel(M_canvas_other.inverse() * owner_.canvas_.Ray(there));
@@ -193,7 +200,8 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
     if (geometry[Unit::kTrailer]) trailer_view_ = geometry[Unit::kTrailer]->view();
     for (const Unit unit : kUnits) {
         if (!geometry[unit]) continue;
-        analysis_[unit] = std::make_unique<UnitAnalysis>(*geometry[unit], AnalysisOptions(view(unit)));
+        analysis_[unit] =
+            std::make_unique<UnitAnalysis>(*geometry[unit], AnalysisOptions(view(unit)));
         smoother_[unit] = std::make_unique<PathSmoother>(SmootherOptions(view(unit), options));
     }
     if (has_trailer()) {
@@ -248,8 +256,10 @@ void UnifiedVertexMotion::LayOut() {
     Vector2d high = tractor;
     if (has_trailer() && placement_->acquired()) {
         const Vector2d size = Size(*trailer_view_);
-        for (const Vector2d& corner : {Vector2d(0, 0), Vector2d(size.x(), 0), Vector2d(0, size.y()), size}) {
-            const Vector2d p = (placement_->M_tractor_trailer() * corner.homogeneous()).hnormalized();
+        for (const Vector2d& corner :
+             {Vector2d(0, 0), Vector2d(size.x(), 0), Vector2d(0, size.y()), size}) {
+            const Vector2d p =
+                (placement_->M_tractor_trailer() * corner.homogeneous()).hnormalized();
             low = low.cwiseMin(p);
             high = high.cwiseMax(p);
         }
@@ -258,7 +268,8 @@ void UnifiedVertexMotion::LayOut() {
     if (has_trailer() && !placement_->acquired()) {
         M_canvas_tractor_ = Shift({0, 0.5 * (canvas.y() - tractor.y())});
         const Vector2d trailer = Size(*trailer_view_);
-        M_loose_[Unit::kTrailer] = Shift({canvas.x() - trailer.x(), 0.5 * (canvas.y() - trailer.y())});
+        M_loose_[Unit::kTrailer] =
+            Shift({canvas.x() - trailer.x(), 0.5 * (canvas.y() - trailer.y())});
     }
     const auto& place = options_.placement;
     if (place[Unit::kTractor]) M_canvas_tractor_ = Shift(*place[Unit::kTractor]);
@@ -351,7 +362,8 @@ bool UnifiedVertexMotion::AcquireTrailer(Record& record) {
         }
         matcher_->Acquire(views, regions, view_pairs_);
         for (const ViewPair& pair : view_pairs_) {
-            record.inter[overlap].push_back({tractor.ToView(pair.tractor_px), trailer.ToView(pair.trailer_px)});
+            record.inter[overlap].push_back(
+                {tractor.ToView(pair.tractor_px), trailer.ToView(pair.trailer_px)});
         }
     }
     return placement_->Acquire(record.inter);
@@ -368,7 +380,8 @@ void UnifiedVertexMotion::UpdateSeams(Record& record) {
         } else if (!placement_->acquired() || record.candidates[overlap] < kFewestCandidates) {
             record.seams[overlap] = SeamState::kNoOverlap;
         } else {
-            record.seams[overlap] = unmatched < kCoastFrames ? SeamState::kCoast : SeamState::kReacquire;
+            record.seams[overlap] =
+                unmatched < kCoastFrames ? SeamState::kCoast : SeamState::kReacquire;
         }
     }
 }
@@ -409,8 +422,9 @@ void UnifiedVertexMotion::Stabilise(std::int64_t index, Unit unit) {
     PoseOffset offset;
     if (options_.stabilize) {
         const PathSmoother::Window window = Window(index, unit);
-        offset.value = At(index).intra[unit].known || index == 0 ? smoother_[unit]->Next(window)
-                                                                : Vector3d(kDecay * window.early_output);
+        offset.value = At(index).intra[unit].known || index == 0
+                           ? smoother_[unit]->Next(window)
+                           : Vector3d(kDecay * window.early_output);
     }
     stabilizer_[unit][1] = stabilizer_[unit][0];
     stabilizer_[unit][0] = ToPose(view(unit), offset);

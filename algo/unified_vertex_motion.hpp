@@ -17,17 +17,18 @@ enum class Border { kFree, kCovered };
 struct UnifiedVertexMotionOptions {
     bool stabilize = true;
     bool stitch = true;
-    int lookahead_frames = 0;        ///< 0..kMaxLookahead
-    Border border = Border::kFree;   ///< kFree: uncovered pixels are no data; kCovered: zoomed in
-    double cropping = 0.90;          ///< kCovered: share of the view's width that stays visible
-    double kappa = 0.5;              ///< who moves in an overlap: 0 the trailer, 1 the tractor
+    int lookahead_frames = 0;       ///< 0..kMaxLookahead
+    Border border = Border::kFree;  ///< kFree: uncovered pixels are no data; kCovered: zoomed in
+    double cropping = 0.90;         ///< kCovered: share of the view's width that stays visible
+    double kappa = 0.5;             ///< who moves in an overlap: 0 the trailer, 1 the tractor
     /// Plane: top-left pixel of each unit on the canvas, instead of matching.
     PerUnit<std::optional<Eigen::Vector2d>> placement;
 };
 
 /// Where everything goes on the canvas at one moment: what the renderer needs.
 struct Composition {
-    PerUnit<Eigen::Matrix3d> M_canvas_view{{Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()}};
+    PerUnit<Eigen::Matrix3d> M_canvas_view{
+        {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()}};
     PerUnit<VertexField> view_offset{{VertexField::Zero(), VertexField::Zero()}};
     VertexField discrepancy = VertexField::Zero();  ///< see StitchingMotionField
     double kappa = 0.5;
@@ -38,17 +39,19 @@ struct Composition {
     PerUnit<PoseOffset> stabilization;  ///< S of each unit, for reports
 };
 
-/// Where the composition shows a ray of `unit`'s view, canvas px. Inverts what the composed map does,
-/// to 0.01 px for fields that do not fold.
-Eigen::Vector2d ToCanvas(const Projection& canvas, const Projection& view, const Composition& composition,
-                         Unit unit, const Eigen::Vector3d& view_ray);
+/// Where the composition shows a ray of `unit`'s view, canvas px. Inverts what the composed map
+/// does, to 0.01 px for fields that do not fold.
+Eigen::Vector2d ToCanvas(const Projection& canvas, const Projection& view,
+                         const Composition& composition, Unit unit,
+                         const Eigen::Vector3d& view_ray);
 
-/// Unified vertex motion in its live form (facts 4.6): causal, fixed memory, one step per frame set.
-/// A rig has a tractor and perhaps a trailer.
+/// Unified vertex motion in its live form (facts 4.6): causal, fixed memory, one step per frame
+/// set. A rig has a tractor and perhaps a trailer.
 class UnifiedVertexMotion {
  public:
     /// `geometry[kTrailer]` may be empty. The canvas and both views have the same projection.
-    UnifiedVertexMotion(const Projection& canvas, const PerUnit<std::optional<UnitGeometry>>& geometry,
+    UnifiedVertexMotion(const Projection& canvas,
+                        const PerUnit<std::optional<UnitGeometry>>& geometry,
                         const UnifiedVertexMotionOptions& options);
     ~UnifiedVertexMotion();
 
@@ -107,8 +110,9 @@ class UnifiedVertexMotion {
 
     Eigen::Matrix3d M_canvas_tractor_ = Eigen::Matrix3d::Identity();
     PerUnit<Eigen::Matrix3d> M_loose_;  // plane, before anything was matched: canvas from view
-    PerUnit<std::array<Eigen::Matrix3d, 2>> stabilizer_;  // of the frames emitted last, newest first
-    std::array<Eigen::Matrix3d, 2> hitch_pose_;           // likewise: smoothed trailer placement
+    PerUnit<std::array<Eigen::Matrix3d, 2>>
+        stabilizer_;                             // of the frames emitted last, newest first
+    std::array<Eigen::Matrix3d, 2> hitch_pose_;  // likewise: smoothed trailer placement
     Eigen::Matrix3d raw_hitch_pose_ = Eigen::Matrix3d::Identity();  // before smoothing
     double hitch_scale_ = 1;
     bool hitch_known_ = false;

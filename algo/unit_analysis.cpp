@@ -21,6 +21,8 @@ void UnitAnalysis::Analyse(const UnitFrames& frames, IntraMotion& motion) {
     field_.Estimate(intra_features_, motion);
 }
 
-void UnitAnalysis::Reset() { tracker_.Reset(); }
+void UnitAnalysis::Reset() {
+    tracker_.Reset();
+}
 
 }  // namespace hitchview::algo

@@ -26,7 +26,9 @@ class UnitAnalysis {
     void Reset();
 
     /// What the matcher needs of the moment analysed last.
-    [[nodiscard]] MatchView match_view() const { return {&late_, &view_.mask(), tracker_.features()}; }
+    [[nodiscard]] MatchView match_view() const {
+        return {&late_, &view_.mask(), tracker_.features()};
+    }
     [[nodiscard]] const SemiSurroundView& view() const { return view_; }
     [[nodiscard]] int features() const { return static_cast<int>(intra_features_.size()); }
 

@@ -71,7 +71,8 @@ bool UnitGeometry::Project(int camera, const Vector3d& ray, Vector2d& pixel) con
     return ProjectPoint(mounted(camera), surface_.Hit(ray), pixel);
 }
 
-bool UnitGeometry::ProjectPoint(const MountedCamera& camera, const Vector3d& p_unit_m, Vector2d& pixel) {
+bool UnitGeometry::ProjectPoint(const MountedCamera& camera, const Vector3d& p_unit_m,
+                                Vector2d& pixel) {
     const Vector3d p_camera_m = camera.R_camera_unit * (p_unit_m - camera.position_m);
     // Most cameras look elsewhere, and the lens model is dear.
     if (p_camera_m.z() < camera.least_cosine * p_camera_m.norm()) return false;

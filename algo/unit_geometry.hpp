@@ -15,13 +15,14 @@ inline constexpr std::size_t kMaxCameras = 8;
 /// The surface on which the cameras of a ring are aligned: what lies on it shows no parallax.
 /// A vertical cylinder round the hitch axis, cut off below by the ground.
 struct AlignmentSurface {
-    double radius_m = 100;         ///< of the cylinder
-    double viewpoint_m = 1.3;      ///< height of the panorama's viewpoint above the hitch point
-    double ground_m = -0.4;        ///< height of the ground in the unit frame, below the viewpoint
+    double radius_m = 100;     ///< of the cylinder
+    double viewpoint_m = 1.3;  ///< height of the panorama's viewpoint above the hitch point
+    double ground_m = -0.4;    ///< height of the ground in the unit frame, below the viewpoint
 
     /// Point of the surface, in the unit frame, that `ray` of the view hits.
     [[nodiscard]] Eigen::Vector3d Hit(const Eigen::Vector3d& ray) const;
-    /// Ray of the view that hits the surface where `direction` from `position_m` does (a place inside).
+    /// Ray of the view that hits the surface where `direction` from `position_m` does (a place
+    /// inside).
     [[nodiscard]] Eigen::Vector3d RayOf(const Eigen::Vector3d& position_m,
                                         const Eigen::Vector3d& direction) const;
 };
@@ -50,15 +51,18 @@ class UnitGeometry {
     [[nodiscard]] int camera_width_px(int camera) const { return mounted(camera).model.width_px; }
     [[nodiscard]] int camera_height_px(int camera) const { return mounted(camera).model.height_px; }
 
-    /// Cameras that have a pixel for `ray` of the view, also outside their picture: there their share
-    /// is 0 on a ring. The one camera of a plane always has all of it.
+    /// Cameras that have a pixel for `ray` of the view, also outside their picture: there their
+    /// share is 0 on a ring. The one camera of a plane always has all of it.
     void See(const Eigen::Vector3d& ray, Sights& sights) const;
 
     /// Pixel of `camera` for a ray of the view, also outside the picture; false if it has none.
-    [[nodiscard]] bool Project(int camera, const Eigen::Vector3d& ray, Eigen::Vector2d& pixel) const;
+    [[nodiscard]] bool Project(int camera, const Eigen::Vector3d& ray,
+                               Eigen::Vector2d& pixel) const;
 
-    /// Ray of the view that a pixel of `camera` shows: inverts Project. Empty where the lens has none.
-    [[nodiscard]] std::optional<Eigen::Vector3d> ViewRay(int camera, const Eigen::Vector2d& pixel) const;
+    /// Ray of the view that a pixel of `camera` shows: inverts Project. Empty where the lens has
+    /// none.
+    [[nodiscard]] std::optional<Eigen::Vector3d> ViewRay(int camera,
+                                                         const Eigen::Vector2d& pixel) const;
 
  private:
     struct MountedCamera {
@@ -68,7 +72,8 @@ class UnitGeometry {
         double least_cosine;  ///< of the angle from the optical axis that the lens can see
     };
 
-    static bool ProjectPoint(const MountedCamera& camera, const Eigen::Vector3d& p_unit_m, Eigen::Vector2d& pixel);
+    static bool ProjectPoint(const MountedCamera& camera, const Eigen::Vector3d& p_unit_m,
+                             Eigen::Vector2d& pixel);
     [[nodiscard]] const MountedCamera& mounted(int camera) const {
         return cameras_[static_cast<std::size_t>(camera)];
     }

@@ -16,7 +16,7 @@ struct PointMotion {
 struct PropagationOptions {
     Eigen::Vector2d radius_px{80, 80};  ///< semi-axes of the ellipse around a vertex
     int min_votes = 3;
-    double shrink_votes = 3;            ///< n votes count as n / (n + shrink_votes)
+    double shrink_votes = 3;  ///< n votes count as n / (n + shrink_votes)
 };
 
 /// Motion of the vertices from the motions of points (paper eq. 'vertex residual'): the median, per

@@ -18,10 +18,14 @@ constexpr int kFramesAhead = 4;
 
 drivers::DriveProfile Profile(SimulationConfig::Profile profile) {
     switch (profile) {
-        case SimulationConfig::Profile::kStraight: return drivers::DriveProfile::kStraight;
-        case SimulationConfig::Profile::kSlalom: return drivers::DriveProfile::kSlalom;
-        case SimulationConfig::Profile::kTurnLeft: return drivers::DriveProfile::kTurnLeft;
-        case SimulationConfig::Profile::kTurnRight: return drivers::DriveProfile::kTurnRight;
+        case SimulationConfig::Profile::kStraight:
+            return drivers::DriveProfile::kStraight;
+        case SimulationConfig::Profile::kSlalom:
+            return drivers::DriveProfile::kSlalom;
+        case SimulationConfig::Profile::kTurnLeft:
+            return drivers::DriveProfile::kTurnLeft;
+        case SimulationConfig::Profile::kTurnRight:
+            return drivers::DriveProfile::kTurnRight;
     }
     return drivers::DriveProfile::kStraight;
 }
@@ -79,7 +83,8 @@ hal::Checked<hal::Done> Board::OpenSimulation(const RigConfig& config) {
         }
     }
     if (!needed) return hal::Done{};
-    auto rig = drivers::SimulatedRig::Create(ToOptions(config.simulation, config.period.value_or(kDefaultPeriod)));
+    auto rig = drivers::SimulatedRig::Create(
+        ToOptions(config.simulation, config.period.value_or(kDefaultPeriod)));
     if (!rig) return config.file.string() + ": simulation: " + rig.error();
     simulation_ = std::move(*rig);
     return hal::Done{};
@@ -91,16 +96,19 @@ hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit un
         const int index = SimulatedIndex(*simulation_, unit, camera.name);
         if (index < 0) {
             return config.file.string() + ": camera " + camera.name + " of the " + ToString(unit) +
-                   " is not one that the simulated rig has (tractor: front, left_front, right_front; "
+                   " is not one that the simulated rig has (tractor: front, left_front, "
+                   "right_front; "
                    "trailer: left, left_rear, rear, right_rear, right)";
         }
-        cameras_[unit].push_back(
-            std::make_unique<drivers::SimulatedCamera>(*simulation_, index, hal::Instant{0}, slots));
+        cameras_[unit].push_back(std::make_unique<drivers::SimulatedCamera>(
+            *simulation_, index, hal::Instant{0}, slots));
         return hal::Done{};
     }
-    auto replay = drivers::ReplayCamera::Open(camera.replay.string(), {.name = camera.name, .slots = slots});
+    auto replay =
+        drivers::ReplayCamera::Open(camera.replay.string(), {.name = camera.name, .slots = slots});
     if (!replay) return config.file.string() + ": camera " + camera.name + ": " + replay.error();
-    if (period_.count() == 0) period_ = hal::Instant(static_cast<std::int64_t>(1e9 / (*replay)->rate_hz()));
+    if (period_.count() == 0)
+        period_ = hal::Instant(static_cast<std::int64_t>(1e9 / (*replay)->rate_hz()));
     cameras_[unit].push_back(std::move(*replay));
     return hal::Done{};
 }
@@ -126,12 +134,13 @@ CameraFormats Board::formats() const {
 }
 
 hal::Checked<std::unique_ptr<hal::Publisher>> Board::OpenPublisher(const PublishConfig& config) {
-    auto publisher = drivers::LcmPublisher::Create({.url = config.url,
-                                                    .panorama_channel = config.panorama_channel,
-                                                    .status_channel = config.status_channel,
-                                                    .hitch_angle_channel = config.hitch_angle_channel,
-                                                    .max_image_bytes = config.max_bytes},
-                                                   *clock_);
+    auto publisher =
+        drivers::LcmPublisher::Create({.url = config.url,
+                                       .panorama_channel = config.panorama_channel,
+                                       .status_channel = config.status_channel,
+                                       .hitch_angle_channel = config.hitch_angle_channel,
+                                       .max_image_bytes = config.max_bytes},
+                                      *clock_);
     if (!publisher) return publisher.error();
     return std::unique_ptr<hal::Publisher>(std::move(*publisher));
 }

@@ -41,8 +41,8 @@ class Board {
  private:
     Board();
     hal::Checked<hal::Done> OpenSimulation(const RigConfig& config);
-    hal::Checked<hal::Done> OpenCamera(const RigConfig& config, algo::Unit unit, const CameraConfig& camera,
-                                       int slots);
+    hal::Checked<hal::Done> OpenCamera(const RigConfig& config, algo::Unit unit,
+                                       const CameraConfig& camera, int slots);
     hal::Checked<hal::Done> OpenCanBus(const RigConfig& config);
 
     std::unique_ptr<hal::Clock> clock_;

@@ -33,14 +33,15 @@ std::string FrameName(int frame) {
 std::string Describe(const SimulatedRig& rig) {
     const drivers::SimulationOptions& o = rig.options();
     std::ostringstream text;
-    text << "simulation 1: seed " << o.seed << ", " << o.frames << " frames of " << o.period.count() << " ns, "
-         << o.width_px << "x" << o.height_px << ", speed " << o.speed_mps << ", profile "
-         << static_cast<int>(o.profile) << ", curvature " << o.curvature_per_m << ", slalom " << o.slalom_period_s
-         << ", gains " << o.gain_spread << ", noise " << o.noise_sigma << ", shake";
+    text << "simulation 1: seed " << o.seed << ", " << o.frames << " frames of " << o.period.count()
+         << " ns, " << o.width_px << "x" << o.height_px << ", speed " << o.speed_mps << ", profile "
+         << static_cast<int>(o.profile) << ", curvature " << o.curvature_per_m << ", slalom "
+         << o.slalom_period_s << ", gains " << o.gain_spread << ", noise " << o.noise_sigma
+         << ", shake";
     for (const algo::Unit unit : algo::kUnits) {
         const drivers::ShakeOptions& s = o.shake[unit];
-        text << ' ' << s.roll_pitch_rad << ' ' << s.yaw_rad << ' ' << s.translation_m << ' ' << s.lowest_hz << ' '
-             << s.highest_hz << ' ' << s.scale;
+        text << ' ' << s.roll_pitch_rad << ' ' << s.yaw_rad << ' ' << s.translation_m << ' '
+             << s.lowest_hz << ' ' << s.highest_hz << ' ' << s.scale;
     }
     text << ", quality " << kQuality << '\n';
     return text.str();
@@ -72,8 +73,10 @@ class ProgressBar {
         if (isatty(STDERR_FILENO) == 0) return;
         constexpr int kWidth = 40;
         const int filled = done_ * kWidth / total_;
-        std::fprintf(stderr, "\r%s [%s%s] %3d %%", what_.c_str(), std::string(static_cast<std::size_t>(filled), '#').c_str(),
-                     std::string(static_cast<std::size_t>(kWidth - filled), '.').c_str(), done_ * 100 / total_);
+        std::fprintf(stderr, "\r%s [%s%s] %3d %%", what_.c_str(),
+                     std::string(static_cast<std::size_t>(filled), '#').c_str(),
+                     std::string(static_cast<std::size_t>(kWidth - filled), '.').c_str(),
+                     done_ * 100 / total_);
         shown_ = true;
     }
 
@@ -86,8 +89,10 @@ class ProgressBar {
 };
 
 /// NV12 to I420: the chroma of simulated cameras comes interleaved, the compressor takes planes.
-void SplitChroma(const hal::FrameFormat& format, const std::vector<std::uint8_t>& nv12, std::vector<std::uint8_t>& i420) {
-    const std::size_t luma = static_cast<std::size_t>(format.width_px) * static_cast<std::size_t>(format.height_px);
+void SplitChroma(const hal::FrameFormat& format, const std::vector<std::uint8_t>& nv12,
+                 std::vector<std::uint8_t>& i420) {
+    const std::size_t luma =
+        static_cast<std::size_t>(format.width_px) * static_cast<std::size_t>(format.height_px);
     std::copy_n(nv12.begin(), luma, i420.begin());
     for (std::size_t i = 0; i < luma / 4; ++i) {
         i420[luma + i] = nv12[luma + 2 * i];
@@ -101,7 +106,8 @@ class Recorder {
     Recorder(const SimulatedRig& rig, const DemoRecording& recording)
         : rig_(rig),
           recording_(recording),
-          format_{rig.format().width_px, rig.format().height_px, hal::PixelFormat::kI420, hal::Range::kFull},
+          format_{rig.format().width_px, rig.format().height_px, hal::PixelFormat::kI420,
+                  hal::Range::kFull},
           nv12_(hal::FrameBytes(rig.format())),
           i420_(hal::FrameBytes(format_)),
           encoder_(format_, {.budget_bytes = kMaxPictureBytes, .highest_quality = kQuality}) {}
@@ -125,7 +131,8 @@ class Recorder {
     drivers::Renderer::Workspace workspace_;
 };
 
-bool RecordPictures(const SimulatedRig& rig, const DemoRecording& recording, const std::atomic<bool>& stop) {
+bool RecordPictures(const SimulatedRig& rig, const DemoRecording& recording,
+                    const std::atomic<bool>& stop) {
     const int pictures = rig.options().frames * SimulatedRig::kCameras;
     ProgressBar progress("rendering the drive", pictures);
     std::atomic<int> next{0};
@@ -135,7 +142,8 @@ bool RecordPictures(const SimulatedRig& rig, const DemoRecording& recording, con
         threads.emplace_back([&] {
             Recorder recorder(rig, recording);
             for (int i = next++; i < pictures && !stop && !failed; i = next++) {
-                if (!recorder.Record(i % SimulatedRig::kCameras, i / SimulatedRig::kCameras)) failed = true;
+                if (!recorder.Record(i % SimulatedRig::kCameras, i / SimulatedRig::kCameras))
+                    failed = true;
                 progress.Step();
             }
         });
@@ -152,13 +160,17 @@ std::string RigYaml(const SimulatedRig& rig, bool unified) {
         yaml << "  " << ToString(unit) << ":\n    cameras:\n";
         for (int i = 0; i < SimulatedRig::kCameras; ++i) {
             if (rig.camera(i).unit != unit) continue;
-            yaml << "      - {name: " << rig.camera(i).name << ", source: {replay: " << rig.camera(i).name << "}}\n";
+            yaml << "      - {name: " << rig.camera(i).name
+                 << ", source: {replay: " << rig.camera(i).name << "}}\n";
         }
     }
-    yaml << "period_ms: " << std::chrono::duration<double, std::milli>(rig.options().period).count() << '\n';
+    yaml << "period_ms: " << std::chrono::duration<double, std::milli>(rig.options().period).count()
+         << '\n';
     if (!unified) yaml << "stabilization: {enabled: false}\nstitching: {enabled: false}\n";
-    yaml << "can:\n  source: {candump: can.log}\n  hitch_angle: {id: " << drivers::SimulatedCanBus::kHitchAngleId
-         << ", start_bit: 23, length_bits: 12, byte_order: motorola, factor_deg: 0.1, offset_deg: -90,\n"
+    yaml << "can:\n  source: {candump: can.log}\n  hitch_angle: {id: "
+         << drivers::SimulatedCanBus::kHitchAngleId
+         << ", start_bit: 23, length_bits: 12, byte_order: motorola, factor_deg: 0.1, offset_deg: "
+            "-90,\n"
             "                min_deg: -90, max_deg: 90}\n";
     return yaml.str();
 }
@@ -170,11 +182,13 @@ std::string SaveRig(const SimulatedRig& rig, const DemoRecording& recording) {
     calibration.written_by = "hitchview demo, from the simulation's own geometry";
     for (int i = 0; i < SimulatedRig::kCameras; ++i) {
         const drivers::SimulatedCameraGeometry& camera = rig.camera(i);
-        calibration.cameras[std::string(camera.name)] = calib::CalibratedCamera::From(camera.unit, camera.geometry);
+        calibration.cameras[std::string(camera.name)] =
+            calib::CalibratedCamera::From(camera.unit, camera.geometry);
     }
     std::string refused = calib::SaveCalibration(calibration, recording.folder / "rig.calib.yaml");
     if (!refused.empty()) return refused;
-    if (!WriteFile(recording.rig(), RigYaml(rig, true)) || !WriteFile(recording.plain_rig(), RigYaml(rig, false))) {
+    if (!WriteFile(recording.rig(), RigYaml(rig, true)) ||
+        !WriteFile(recording.plain_rig(), RigYaml(rig, false))) {
         return recording.folder.string() + ": cannot be written";
     }
     return "";
@@ -187,12 +201,13 @@ bool RecordCan(const SimulatedRig& rig, const DemoRecording& recording) {
     while (const auto frame = bus.WaitFrame(std::chrono::milliseconds(1))) {
         const std::int64_t us = frame.value().received_at.count() / 1000;
         char head[64];
-        std::snprintf(head, sizeof head, "(%010" PRId64 ".%06" PRId64 ") can0 %03X#", us / 1'000'000, us % 1'000'000,
-                      frame.value().id);
+        std::snprintf(head, sizeof head, "(%010" PRId64 ".%06" PRId64 ") can0 %03X#",
+                      us / 1'000'000, us % 1'000'000, frame.value().id);
         log += head;
         for (int i = 0; i < frame.value().size_bytes; ++i) {
             char byte[3];
-            std::snprintf(byte, sizeof byte, "%02X", frame.value().data[static_cast<std::size_t>(i)]);
+            std::snprintf(byte, sizeof byte, "%02X",
+                          frame.value().data[static_cast<std::size_t>(i)]);
             log += byte;
         }
         log += '\n';
@@ -221,7 +236,8 @@ hal::Checked<DemoRecording> RecordDemo(const SimulatedRig& rig, const std::files
         }
         if (refused) return folder.string() + ": " + refused.message();
         if (!RecordPictures(rig, recording, stop) || !RecordCan(rig, recording)) {
-            return folder.string() + (stop ? ": stopped before the drive was rendered" : ": cannot be written");
+            return folder.string() +
+                   (stop ? ": stopped before the drive was rendered" : ": cannot be written");
         }
     }
     const std::string saved = SaveRig(rig, recording);

@@ -16,14 +16,15 @@ using Eigen::Vector3d;
 constexpr int kFirstRow = 3;
 constexpr int kRowStep = 2;
 
-Vector2d SecondDifference(const algo::Projection& picture, const Vector2d& late, const Vector2d& middle,
-                          const Vector2d& early) {
+Vector2d SecondDifference(const algo::Projection& picture, const Vector2d& late,
+                          const Vector2d& middle, const Vector2d& early) {
     return picture.Difference(late, middle) - picture.Difference(middle, early);
 }
 
 }  // namespace
 
-TruthMeter::TruthMeter(const SimulatedRig& rig, const RigGeometry& geometry) : rig_(rig), geometry_(geometry) {
+TruthMeter::TruthMeter(const SimulatedRig& rig, const RigGeometry& geometry)
+    : rig_(rig), geometry_(geometry) {
     for (int i = 0; i < kLandmarks; ++i) {
         const double azimuth = 2 * std::numbers::pi * i / kLandmarks;
         const double elevation = (i % 3) * 0.08;  // level with the horizon and above
@@ -37,10 +38,12 @@ int TruthMeter::RigCamera(Unit unit, int camera) const {
 }
 
 /// The camera of the unit that has the largest share in the view there.
-TruthMeter::Sighting TruthMeter::Sight(Unit unit, int frame, const Vector3d& p_world_m, bool behind_others,
+TruthMeter::Sighting TruthMeter::Sight(Unit unit, int frame, const Vector3d& p_world_m,
+                                       bool behind_others,
                                        const algo::Composition& composition) const {
     const algo::UnitGeometry& geometry = *geometry_.units[unit];
-    const auto occlusion = behind_others ? SimulatedRig::Occlusion::kIgnored : SimulatedRig::Occlusion::kTested;
+    const auto occlusion =
+        behind_others ? SimulatedRig::Occlusion::kIgnored : SimulatedRig::Occlusion::kTested;
     Sighting best;
     double best_share = 0.5;
     for (int i = 0; i < geometry.cameras(); ++i) {
@@ -63,7 +66,8 @@ TruthMeter::Sighting TruthMeter::Sight(Unit unit, int frame, const Vector3d& p_w
 void TruthMeter::Observe(const ShownPanorama& shown, const Pipeline& pipeline) {
     const int frame = static_cast<int>(shown.picture.header.sequence);
     for (const Unit unit : algo::kUnits) ObserveShake(unit, frame, *shown.composition);
-    for (const algo::Overlap overlap : algo::kOverlaps) ObserveSeam(overlap, frame, shown, pipeline);
+    for (const algo::Overlap overlap : algo::kOverlaps)
+        ObserveSeam(overlap, frame, shown, pipeline);
 }
 
 void TruthMeter::ObserveShake(Unit unit, int frame, const algo::Composition& composition) {
@@ -74,30 +78,39 @@ void TruthMeter::ObserveShake(Unit unit, int frame, const algo::Composition& com
     for (std::size_t i = 0; i < kLandmarks; ++i) {
         late[i] = Sight(unit, frame, landmarks_[i], true, composition);
         // Another camera sees from another place: that step is parallax of the rig, not shake.
-        if (late[i].camera < 0 || late[i].camera != middle[i].camera || late[i].camera != early[i].camera) continue;
+        if (late[i].camera < 0 || late[i].camera != middle[i].camera ||
+            late[i].camera != early[i].camera)
+            continue;
         input_squares_[unit] +=
-            SecondDifference(view, late[i].view_px, middle[i].view_px, early[i].view_px).squaredNorm();
-        output_squares_[unit] +=
-            SecondDifference(geometry_.canvas, late[i].canvas_px, middle[i].canvas_px, early[i].canvas_px)
+            SecondDifference(view, late[i].view_px, middle[i].view_px, early[i].view_px)
                 .squaredNorm();
+        output_squares_[unit] += SecondDifference(geometry_.canvas, late[i].canvas_px,
+                                                  middle[i].canvas_px, early[i].canvas_px)
+                                     .squaredNorm();
         ++shake_samples_[unit];
     }
 }
 
-void TruthMeter::ObserveSeam(algo::Overlap overlap, int frame, const ShownPanorama& shown, const Pipeline& pipeline) {
+void TruthMeter::ObserveSeam(algo::Overlap overlap, int frame, const ShownPanorama& shown,
+                             const Pipeline& pipeline) {
     const algo::ComposedMap& map = pipeline.map();
     constexpr double kBlock = algo::ComposedMap::kBlock;
-    const int col = std::clamp(static_cast<int>(std::lround((map.seam_px()[overlap] + 0.5) / kBlock)), 0, map.block_cols());
+    const int col =
+        std::clamp(static_cast<int>(std::lround((map.seam_px()[overlap] + 0.5) / kBlock)), 0,
+                   map.block_cols());
     for (int row = kFirstRow; row < map.block_rows() - kFirstRow; row += kRowStep) {
         const Vector2d canvas_px{col * kBlock - 0.5, row * kBlock - 0.5};
         for (int s = 0; s < map.cameras(); ++s) {
             const algo::ComposedMap::Corner& corner = map.corner(s, row, col);
             if (map.unit_of(s) != Unit::kTractor || corner.weight <= 0.1F) continue;
-            const auto point = rig_.WorldPointAt(map.camera_of(s), frame, Vector2d(corner.x, corner.y));
+            const auto point =
+                rig_.WorldPointAt(map.camera_of(s), frame, Vector2d(corner.x, corner.y));
             if (!point) continue;
-            const Sighting other = Sight(Unit::kTrailer, frame, point->p_world_m, false, *shown.composition);
+            const Sighting other =
+                Sight(Unit::kTrailer, frame, point->p_world_m, false, *shown.composition);
             if (other.camera < 0) continue;
-            seam_.push_back({point->distance_m, geometry_.canvas.Difference(other.canvas_px, canvas_px).norm()});
+            seam_.push_back({point->distance_m,
+                             geometry_.canvas.Difference(other.canvas_px, canvas_px).norm()});
         }
     }
 }
@@ -111,11 +124,13 @@ TruthMeter::Shake TruthMeter::ShakeOf(Unit unit) const {
 TruthMeter::Seam TruthMeter::SeamOf(double from_m, double to_m) const {
     std::vector<double> errors;
     for (const SeamSample& sample : seam_) {
-        if (sample.distance_m >= from_m && sample.distance_m < to_m) errors.push_back(sample.error_px);
+        if (sample.distance_m >= from_m && sample.distance_m < to_m)
+            errors.push_back(sample.error_px);
     }
     if (errors.empty()) return {};
     std::sort(errors.begin(), errors.end());
-    return {errors[errors.size() / 2], errors[errors.size() * 95 / 100], static_cast<int>(errors.size())};
+    return {errors[errors.size() / 2], errors[errors.size() * 95 / 100],
+            static_cast<int>(errors.size())};
 }
 
 }  // namespace hitchview::app

@@ -23,7 +23,7 @@ class TruthMeter {
     void Observe(const ShownPanorama& shown, const Pipeline& pipeline);
 
     struct Shake {
-        double input_px = 0;   ///< px of the canvas
+        double input_px = 0;  ///< px of the canvas
         double output_px = 0;
         int samples = 0;
     };
@@ -54,7 +54,8 @@ class TruthMeter {
     Sighting Sight(algo::Unit unit, int frame, const Eigen::Vector3d& p_world_m, bool behind_others,
                    const algo::Composition& composition) const;
     void ObserveShake(algo::Unit unit, int frame, const algo::Composition& composition);
-    void ObserveSeam(algo::Overlap overlap, int frame, const ShownPanorama& shown, const Pipeline& pipeline);
+    void ObserveSeam(algo::Overlap overlap, int frame, const ShownPanorama& shown,
+                     const Pipeline& pipeline);
     [[nodiscard]] int RigCamera(algo::Unit unit, int camera) const;
 
     const drivers::SimulatedRig& rig_;

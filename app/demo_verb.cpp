@@ -58,40 +58,53 @@ class Demo {
  public:
     Demo(const DemoOptions& options, const SimulatedRig& rig, const DemoRecording& recording,
          const std::atomic<bool>& stop)
-        : options_(options), rig_(rig), recording_(recording), stop_(stop), chosen_(FrameOfLargestHitchAngle(rig)) {}
+        : options_(options),
+          rig_(rig),
+          recording_(recording),
+          stop_(stop),
+          chosen_(FrameOfLargestHitchAngle(rig)) {}
 
-    hal::Checked<DemoRun> Drive(const std::filesystem::path& rig_file, const RunOptions& run_options) {
+    hal::Checked<DemoRun> Drive(const std::filesystem::path& rig_file,
+                                const RunOptions& run_options) {
         const auto config = LoadRigConfig(rig_file);
         if (!config) return config.error();
         const auto calibration = LoadCalibrationFor(config.value());
         if (!calibration) return calibration.error();
         CameraFormats formats;
-        for (int i = 0; i < SimulatedRig::kCameras; ++i) formats[rig_.camera(i).unit].push_back(rig_.format());
+        for (int i = 0; i < SimulatedRig::kCameras; ++i)
+            formats[rig_.camera(i).unit].push_back(rig_.format());
         const auto geometry = MakeRigGeometry(config.value(), calibration.value(), formats);
         if (!geometry) return geometry.error();
 
         DemoRun run;
         run.truth = std::make_unique<TruthMeter>(rig_, geometry.value());
-        auto summary = RunRig(config.value(), run_options, stop_, [&](const ShownPanorama& shown, const Pipeline& pipeline) {
-            run.truth->Observe(shown, pipeline);
-            // The chosen one may have been dropped: then the next one that was shown.
-            const bool reached = static_cast<int>(shown.picture.header.sequence) >= chosen_;
-            if (reached && run.picture.empty()) run.picture = ToBgr(shown.picture);
-        });
+        auto summary = RunRig(config.value(), run_options, stop_,
+                              [&](const ShownPanorama& shown, const Pipeline& pipeline) {
+                                  run.truth->Observe(shown, pipeline);
+                                  // The chosen one may have been dropped: then the next one that
+                                  // was shown.
+                                  const bool reached =
+                                      static_cast<int>(shown.picture.header.sequence) >= chosen_;
+                                  if (reached && run.picture.empty())
+                                      run.picture = ToBgr(shown.picture);
+                              });
         if (!summary) return summary.error();
         run.summary = *summary;
         return run;
     }
 
     std::string WriteSheetOf(const DemoRun& before, const DemoRun& after) const {
-        if (before.picture.empty() || after.picture.empty()) return "too few panoramas were shown for before_after.png";
+        if (before.picture.empty() || after.picture.empty())
+            return "too few panoramas were shown for before_after.png";
         DemoSheet sheet;
         for (int i = 0; i < SimulatedRig::kCameras; ++i) {
             sheet.cameras.push_back(cv::imread(recording_.picture(i, chosen_).string()));
         }
         char caption[128];
-        std::snprintf(caption, sizeof caption, "fixed calibration, hitch at %.0f degrees: no stabilisation, no stitching motion",
-                      rig_.HitchAngleAt(chosen_) * 57.29578);
+        std::snprintf(
+            caption, sizeof caption,
+            "fixed calibration, hitch at %.0f degrees: no stabilisation, no stitching motion",
+            rig_.HitchAngleAt(chosen_) * 57.29578);
         sheet.panoramas = {{caption, before.picture}, {"unified vertex motion", after.picture}};
         return WriteSheet(sheet, options_.out / "before_after.png");
     }
@@ -108,10 +121,12 @@ nlohmann::json TruthJson(const TruthMeter& truth) {
     nlohmann::json json;
     for (const Unit unit : algo::kUnits) {
         const TruthMeter::Shake shake = truth.ShakeOf(unit);
-        json["shake"][ToString(unit)] = {{"input_px", shake.input_px},
-                                         {"output_px", shake.output_px},
-                                         {"ratio", shake.input_px > 0 ? nlohmann::json(shake.output_px / shake.input_px) : nlohmann::json()},
-                                         {"samples", shake.samples}};
+        json["shake"][ToString(unit)] = {
+            {"input_px", shake.input_px},
+            {"output_px", shake.output_px},
+            {"ratio", shake.input_px > 0 ? nlohmann::json(shake.output_px / shake.input_px)
+                                         : nlohmann::json()},
+            {"samples", shake.samples}};
     }
     const auto seam = [&](double from, double to) -> nlohmann::json {
         const TruthMeter::Seam s = truth.SeamOf(from, to);
@@ -125,8 +140,8 @@ nlohmann::json TruthJson(const TruthMeter& truth) {
 void PrintTruth(const TruthMeter& before, const TruthMeter& after) {
     std::printf("against ground truth (canvas px):         before    after\n");
     for (const Unit unit : algo::kUnits) {
-        std::printf("  shake of the %s, rms second diff. %7.2f  %7.2f\n", ToString(unit), after.ShakeOf(unit).input_px,
-                    after.ShakeOf(unit).output_px);
+        std::printf("  shake of the %s, rms second diff. %7.2f  %7.2f\n", ToString(unit),
+                    after.ShakeOf(unit).input_px, after.ShakeOf(unit).output_px);
     }
     struct Range {
         const char* name;
@@ -135,7 +150,8 @@ void PrintTruth(const TruthMeter& before, const TruthMeter& after) {
     for (const Range& range : {Range{"beyond 10 m", 10, 1e9}, Range{"4 to 10 m  ", 4, 10}}) {
         const TruthMeter::Seam b = before.SeamOf(range.from_m, range.to_m);
         const TruthMeter::Seam a = after.SeamOf(range.from_m, range.to_m);
-        std::printf("  seam error %s, median       %7.2f  %7.2f\n", range.name, b.median_px, a.median_px);
+        std::printf("  seam error %s, median       %7.2f  %7.2f\n", range.name, b.median_px,
+                    a.median_px);
         std::printf("  seam error %s, p95          %7.2f  %7.2f\n", range.name, b.p95_px, a.p95_px);
     }
 }
@@ -150,7 +166,8 @@ int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop) {
     Demo demo(options, *rig.value(), recording.value(), stop);
 
     std::optional<BackgroundProgram> display;
-    if (!options.headless) display.emplace(SiblingProgram("hitchview-view"), std::vector<std::string>{});
+    if (!options.headless)
+        display.emplace(SiblingProgram("hitchview-view"), std::vector<std::string>{});
     RunOptions plain;
     plain.workers = options.workers;
     RunOptions unified = plain;
@@ -165,7 +182,8 @@ int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop) {
     std::fputs(Table(after.value().summary).c_str(), stdout);
     PrintTruth(*before.value().truth, *after.value().truth);
     nlohmann::json report = MakeReport(after.value().summary, nullptr);
-    report["truth"] = {{"before", TruthJson(*before.value().truth)}, {"after", TruthJson(*after.value().truth)}};
+    report["truth"] = {{"before", TruthJson(*before.value().truth)},
+                       {"after", TruthJson(*after.value().truth)}};
     for (const std::string& refused : {WriteJson(report, options.out / "report.json"),
                                        demo.WriteSheetOf(before.value(), after.value())}) {
         if (!refused.empty()) return Fail(refused);

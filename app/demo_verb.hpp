@@ -9,14 +9,14 @@ struct DemoOptions {
     bool headless = false;                   ///< open no window
     std::filesystem::path out = "out/demo";  ///< recording, rig file, videos, picture, report
     int frames = 210;                        ///< frame sets of the drive, 30 per second. [30, 3000]
-    int camera_width_px = 1280;              ///< of the simulated cameras, 16:9. 320, 640, 960, 1280 or 1920
-    int workers = 2;                         ///< [1, 16]
-    bool realtime = false;                   ///< one frame set per period; late ones are dropped
+    int camera_width_px = 1280;  ///< of the simulated cameras, 16:9. 320, 640, 960, 1280 or 1920
+    int workers = 2;             ///< [1, 16]
+    bool realtime = false;       ///< one frame set per period; late ones are dropped
 };
 
 /// Drives the simulated vehicle through the whole real pipeline: renders the drive once into JPEG
-/// files, replays it through estimation, renderer and LCM, measures the result against the truth and
-/// writes panorama.avi, before_after.png and report.json. Returns the exit code.
+/// files, replays it through estimation, renderer and LCM, measures the result against the truth
+/// and writes panorama.avi, before_after.png and report.json. Returns the exit code.
 int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace hitchview::app

@@ -11,7 +11,7 @@ struct EvalOptions {
     algo::PerUnit<UnitVideos> units{};
     std::string panorama{};
     std::string json{};  ///< file for the figures; empty: none
-    int step = 1;      ///< see EvaluationOptions
+    int step = 1;        ///< see EvaluationOptions
 };
 
 /// Measures recordings, prints a table to stdout and progress to stderr. Returns the exit code: 0

@@ -13,8 +13,8 @@ namespace hitchview::app {
 struct FrameSet {
     std::uint32_t sequence = 0;
     algo::PerUnit<std::array<hal::FrameLease, algo::kMaxCameras>> leases;
-    hal::Instant captured_from{};   ///< start of the oldest exposure
-    hal::Instant captured_until{};  ///< start of the newest exposure
+    hal::Instant captured_from{};       ///< start of the oldest exposure
+    hal::Instant captured_until{};      ///< start of the newest exposure
     std::uint32_t cameras_missing = 0;  ///< bit i: camera i of the rig, tractor first
 };
 

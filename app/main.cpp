@@ -14,14 +14,17 @@ constexpr int kWrongUse = 2;
 
 std::atomic<bool> stop{false};
 
-void Stop(int) { stop = true; }
+void Stop(int) {
+    stop = true;
+}
 
 void AddRunOptions(CLI::App& verb, ReplayOptions& options) {
     verb.add_option("--rig", options.rig, "rig file (docs/rig.example.yaml shows every key)")
         ->required()
         ->check(CLI::ExistingFile);
     verb.add_option("--out", options.run.out, "folder for report.json and videos");
-    verb.add_option("--frames", options.run.frames, "stop after so many frame sets")->check(CLI::Range(1, 1 << 30));
+    verb.add_option("--frames", options.run.frames, "stop after so many frame sets")
+        ->check(CLI::Range(1, 1 << 30));
     verb.add_option("--lookahead", options.run.lookahead_frames,
                     "frames seen before one is shown: steadier, later by a period each")
         ->check(CLI::Range(0, kMaxLookaheadFrames));
@@ -30,7 +33,8 @@ void AddRunOptions(CLI::App& verb, ReplayOptions& options) {
     verb.add_flag("--write-video", options.run.write_video, "write panorama.avi (Motion JPEG)");
     verb.add_flag("--write-views", options.run.write_views,
                   "write tractor.avi and trailer.avi: each view on the canvas before blending");
-    verb.add_flag("--metrics", options.metrics, "track the written views again and fill the report's quality figures");
+    verb.add_flag("--metrics", options.metrics,
+                  "track the written views again and fill the report's quality figures");
 }
 
 /// Hands the arguments behind a verb to the program that does it.
@@ -53,32 +57,42 @@ int main(int argc, char** argv) {
 
     DemoOptions demo;
     CLI::App& demo_verb = *app.add_subcommand(
-        "demo", "Drive the simulated vehicle through the whole pipeline; no hardware needed.\n"
-                "Example: hitchview demo --headless --out out/demo");
+        "demo",
+        "Drive the simulated vehicle through the whole pipeline; no hardware needed.\n"
+        "Example: hitchview demo --headless --out out/demo");
     demo_verb.add_flag("--headless", demo.headless, "open no window");
-    demo_verb.add_option("--out", demo.out, "folder for recording, videos, picture and report")->capture_default_str();
-    demo_verb.add_option("--frames", demo.frames, "frame sets, 30 per second")->check(CLI::Range(30, 3000))->capture_default_str();
-    demo_verb.add_option("--camera-width", demo.camera_width_px,
-                         "width of the simulated cameras, 16:9; 640 is enough for the default panorama and decodes faster")
+    demo_verb.add_option("--out", demo.out, "folder for recording, videos, picture and report")
+        ->capture_default_str();
+    demo_verb.add_option("--frames", demo.frames, "frame sets, 30 per second")
+        ->check(CLI::Range(30, 3000))
+        ->capture_default_str();
+    demo_verb
+        .add_option("--camera-width", demo.camera_width_px,
+                    "width of the simulated cameras, 16:9; 640 is enough for the default panorama "
+                    "and decodes faster")
         ->check(CLI::IsMember({320, 640, 960, 1280, 1920}))
         ->capture_default_str();
     demo_verb.add_option("--workers", demo.workers, "threads that share the work of a frame")
         ->check(CLI::Range(1, kMaxWorkers))
         ->capture_default_str();
-    demo_verb.add_flag("--realtime", demo.realtime, "one frame set per camera period; late ones are dropped");
+    demo_verb.add_flag("--realtime", demo.realtime,
+                       "one frame set per camera period; late ones are dropped");
 
     ReplayOptions replay;
     CLI::App& replay_verb = *app.add_subcommand(
-        "replay", "Make panoramas from recordings, as fast as they can be read.\n"
-                  "Example: hitchview replay --rig drive/rig.yaml --out out --write-video");
+        "replay",
+        "Make panoramas from recordings, as fast as they can be read.\n"
+        "Example: hitchview replay --rig drive/rig.yaml --out out --write-video");
     AddRunOptions(replay_verb, replay);
-    replay_verb.add_flag("--realtime", replay.run.realtime, "one frame set per period; late ones are dropped");
+    replay_verb.add_flag("--realtime", replay.run.realtime,
+                         "one frame set per period; late ones are dropped");
     replay_verb.add_flag("--publish", replay.run.publish, "publish over LCM as the rig file says");
 
     ReplayOptions run;
-    CLI::App& run_verb = *app.add_subcommand(
-        "run", "Make and publish panoramas at the cameras' pace until stopped.\n"
-               "Example: hitchview run --rig /etc/hitchview/rig.yaml");
+    CLI::App& run_verb =
+        *app.add_subcommand("run",
+                            "Make and publish panoramas at the cameras' pace until stopped.\n"
+                            "Example: hitchview run --rig /etc/hitchview/rig.yaml");
     AddRunOptions(run_verb, run);
 
     app.add_subcommand("view", "Show the published panorama: hitchview view --help");

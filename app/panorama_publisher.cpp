@@ -26,7 +26,9 @@ PanoramaPublisher::PanoramaPublisher(hal::Publisher& publisher, const hal::Clock
     thread_ = std::thread([this] { Work(); });
 }
 
-PanoramaPublisher::~PanoramaPublisher() { Finish(); }
+PanoramaPublisher::~PanoramaPublisher() {
+    Finish();
+}
 
 void PanoramaPublisher::Finish() {
     filled_.Close();

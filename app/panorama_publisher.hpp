@@ -26,27 +26,32 @@ struct PanoramaPublisherOptions {
 class PanoramaPublisher {
  public:
     /// `telemetry` may be null. All references must outlive this.
-    PanoramaPublisher(hal::Publisher& publisher, const hal::Clock& clock, TelemetryThread* telemetry,
-                      const hal::FrameFormat& format, const PanoramaPublisherOptions& options);
+    PanoramaPublisher(hal::Publisher& publisher, const hal::Clock& clock,
+                      TelemetryThread* telemetry, const hal::FrameFormat& format,
+                      const PanoramaPublisherOptions& options);
     ~PanoramaPublisher();
 
     /// Before the telemetry first lets go of an angle: moment of the clock that is moment 0 of the
     /// telemetry.
-    void StartRecording(hal::Instant start) { start_ns_.store(start.count(), std::memory_order_release); }
+    void StartRecording(hal::Instant start) {
+        start_ns_.store(start.count(), std::memory_order_release);
+    }
 
     struct Item {
-        hal::FrameView picture;             ///< borrowed for the call
+        hal::FrameView picture;  ///< borrowed for the call
         hal::Instant captured_until{};
-        hal::PanoramaStatus status;         ///< published_at and dropped are filled in here
+        hal::PanoramaStatus status;  ///< published_at and dropped are filled in here
     };
-    /// Copies the picture. False: all buffers are still being sent, this one is dropped and counted.
-    /// Thread: pipeline.
+    /// Copies the picture. False: all buffers are still being sent, this one is dropped and
+    /// counted. Thread: pipeline.
     bool Append(const Item& item);
     /// Sends what is left and ends the thread. Once.
     void Finish();
 
     [[nodiscard]] std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
-    [[nodiscard]] std::uint64_t published() const { return published_.load(std::memory_order_relaxed); }
+    [[nodiscard]] std::uint64_t published() const {
+        return published_.load(std::memory_order_relaxed);
+    }
     [[nodiscard]] std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
 
  private:

@@ -21,7 +21,8 @@ algo::CameraFrame Borrow(const hal::FrameLease& lease) {
 algo::RigFrames Borrow(const FrameSet& set) {
     algo::RigFrames frames;
     for (const algo::Unit unit : algo::kUnits) {
-        for (std::size_t i = 0; i < algo::kMaxCameras; ++i) frames[unit][i] = Borrow(set.leases[unit][i]);
+        for (std::size_t i = 0; i < algo::kMaxCameras; ++i)
+            frames[unit][i] = Borrow(set.leases[unit][i]);
     }
     return frames;
 }
@@ -43,7 +44,9 @@ Pipeline::Pipeline(const RigGeometry& rig, const algo::UnifiedVertexMotionOption
       panorama_(hal::FrameBytes(format_)),
       view_(hal::FrameBytes(format_)) {}
 
-bool Pipeline::Prime(const FrameSet& set) { return motion_.Prime(Borrow(set), runner_); }
+bool Pipeline::Prime(const FrameSet& set) {
+    return motion_.Prime(Borrow(set), runner_);
+}
 
 void Pipeline::Start() {
     motion_.Reset();
@@ -93,7 +96,9 @@ const ShownPanorama* Pipeline::Show(const algo::Composition& composition) {
         renderer_.Render(map_, frames, algo::NoData::kPattern, Planes(panorama_), runner_);
     }
     ++shown_;
-    result_ = {.picture = {format_, {set.sequence, set.captured_from}, hal::PackedPlanes(format_, panorama_.data())},
+    result_ = {.picture = {format_,
+                           {set.sequence, set.captured_from},
+                           hal::PackedPlanes(format_, panorama_.data())},
                .captured_until = set.captured_until,
                .cameras_missing = set.cameras_missing,
                .composition = &composition};
@@ -110,7 +115,8 @@ hal::FrameView Pipeline::RenderView(algo::Unit unit) {
 }
 
 algo::PanoramaPlanes Pipeline::Planes(std::vector<std::uint8_t>& memory) const {
-    const std::size_t luma = static_cast<std::size_t>(format_.width_px) * static_cast<std::size_t>(format_.height_px);
+    const std::size_t luma =
+        static_cast<std::size_t>(format_.width_px) * static_cast<std::size_t>(format_.height_px);
     return {.width_px = format_.width_px,
             .height_px = format_.height_px,
             .y = memory.data(),

@@ -17,7 +17,7 @@ namespace hitchview::app {
 
 /// One frame set shown: borrowed until the next call of the pipeline.
 struct ShownPanorama {
-    hal::FrameView picture;              ///< I420, full range; sequence is the frame set's
+    hal::FrameView picture;  ///< I420, full range; sequence is the frame set's
     hal::Instant captured_until{};
     std::uint32_t cameras_missing = 0;
     const algo::Composition* composition = nullptr;

@@ -16,7 +16,8 @@ int RunProgram(const std::filesystem::path& program, const std::vector<std::stri
 /// A program that runs beside this one and is asked to end (SIGTERM) with it.
 class BackgroundProgram {
  public:
-    BackgroundProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+    BackgroundProgram(const std::filesystem::path& program,
+                      const std::vector<std::string>& arguments);
     ~BackgroundProgram();
     BackgroundProgram(const BackgroundProgram&) = delete;
     BackgroundProgram& operator=(const BackgroundProgram&) = delete;

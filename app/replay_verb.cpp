@@ -20,7 +20,8 @@ int Fail(int code, const std::string& why) {
 
 std::vector<std::string> EvalArguments(const RigConfig& config, const std::filesystem::path& out,
                                        const std::filesystem::path& json) {
-    std::vector<std::string> arguments{"--json", json.string(), "--panorama", (out / "panorama.avi").string()};
+    std::vector<std::string> arguments{"--json", json.string(), "--panorama",
+                                       (out / "panorama.avi").string()};
     for (const algo::Unit unit : algo::kUnits) {
         const auto& cameras = config.units[unit].cameras;
         if (cameras.empty()) continue;
@@ -37,7 +38,8 @@ std::vector<std::string> EvalArguments(const RigConfig& config, const std::files
 /// Null when it could not be measured; the evaluating program has said why.
 nlohmann::json MeasureQuality(const RigConfig& config, const std::filesystem::path& out) {
     const std::filesystem::path file = out / "quality.json";
-    if (RunProgram(SiblingProgram("hitchview-eval"), EvalArguments(config, out, file)) != 0) return nullptr;
+    if (RunProgram(SiblingProgram("hitchview-eval"), EvalArguments(config, out, file)) != 0)
+        return nullptr;
     std::ifstream in(file);
     return nlohmann::json::parse(in, nullptr, false);
 }
@@ -59,8 +61,10 @@ int ReplayVerb(const ReplayOptions& options, const std::atomic<bool>& stop) {
     std::fputs(Table(summary.value()).c_str(), stdout);
     if (run.out.empty()) return 0;
 
-    const nlohmann::json quality = options.metrics ? MeasureQuality(config.value(), run.out) : nlohmann::json();
-    const std::string refused = WriteJson(MakeReport(summary.value(), quality), run.out / "report.json");
+    const nlohmann::json quality =
+        options.metrics ? MeasureQuality(config.value(), run.out) : nlohmann::json();
+    const std::string refused =
+        WriteJson(MakeReport(summary.value(), quality), run.out / "report.json");
     return refused.empty() ? 0 : Fail(kMachineFailed, refused);
 }
 

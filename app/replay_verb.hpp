@@ -10,8 +10,8 @@ struct ReplayOptions {
     bool metrics = false;  ///< track the written views again and measure them
 };
 
-/// `hitchview replay` and `hitchview run`. Returns the exit code: 0 done, 2 rig or options are wrong,
-/// 3 a camera, the disk or the network failed.
+/// `hitchview replay` and `hitchview run`. Returns the exit code: 0 done, 2 rig or options are
+/// wrong, 3 a camera, the disk or the network failed.
 int ReplayVerb(const ReplayOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace hitchview::app

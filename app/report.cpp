@@ -32,8 +32,11 @@ json Stages(const AllStageTimes& times) {
 }
 
 json EmptyUnit() {
-    return {{"cropping_mean", nullptr}, {"cropping_min", nullptr}, {"distortion_min", nullptr},
-            {"stability", nullptr}, {"jitter_ratio", nullptr}};
+    return {{"cropping_mean", nullptr},
+            {"cropping_min", nullptr},
+            {"distortion_min", nullptr},
+            {"stability", nullptr},
+            {"jitter_ratio", nullptr}};
 }
 
 /// Takes over what is known; null does not overwrite a figure.
@@ -50,33 +53,39 @@ void FillIn(const json& known, json& report) {
     }
 }
 
-json EmptySeam() { return {{"median_px", nullptr}, {"p95_px", nullptr}, {"worst_frame_px", nullptr}}; }
+json EmptySeam() {
+    return {{"median_px", nullptr}, {"p95_px", nullptr}, {"worst_frame_px", nullptr}};
+}
 
 }  // namespace
 
 json MakeReport(const RunSummary& run, const json& quality) {
-    json report{{"schema", 1},
-                {"frames", run.frames},
-                {"dropped", run.dropped},
-                {"period_ms", run.period_ms},
-                {"frames_per_second", run.duration_s > 0 ? json(static_cast<double>(run.frames) / run.duration_s) : json()},
-                {"stages", Stages(run.times)},
-                {"deadline_misses", run.deadline_misses},
-                {"heap_calls_after_ready", nullptr},
-                {"heap_calls_files", nullptr},
-                {"rss_bytes", ResidentBytes()},
-                {"calibration_id", run.calibration_id.empty() ? json() : json(run.calibration_id)}};
+    json report{
+        {"schema", 1},
+        {"frames", run.frames},
+        {"dropped", run.dropped},
+        {"period_ms", run.period_ms},
+        {"frames_per_second",
+         run.duration_s > 0 ? json(static_cast<double>(run.frames) / run.duration_s) : json()},
+        {"stages", Stages(run.times)},
+        {"deadline_misses", run.deadline_misses},
+        {"heap_calls_after_ready", nullptr},
+        {"heap_calls_files", nullptr},
+        {"rss_bytes", ResidentBytes()},
+        {"calibration_id", run.calibration_id.empty() ? json() : json(run.calibration_id)}};
     for (const algo::Unit unit : algo::kUnits) {
         if (run.cameras[unit] > 0) report["units"][ToString(unit)] = EmptyUnit();
     }
     for (const algo::Overlap overlap : algo::kOverlaps) {
-        const bool exists = run.cameras[algo::Unit::kTrailer] > 0 && (run.ring || overlap == algo::Overlap::kRight);
+        const bool exists =
+            run.cameras[algo::Unit::kTrailer] > 0 && (run.ring || overlap == algo::Overlap::kRight);
         if (!exists) continue;
         json& seam = report["seams"][ToString(overlap)];
         seam = EmptySeam();
-        seam["locked_share"] = run.frames > 0 ? json(static_cast<double>(run.locked_frames[overlap]) /
-                                                     static_cast<double>(run.frames))
-                                              : json();
+        seam["locked_share"] = run.frames > 0
+                                   ? json(static_cast<double>(run.locked_frames[overlap]) /
+                                          static_cast<double>(run.frames))
+                                   : json();
     }
     FillIn(quality, report);
     return report;
@@ -93,14 +102,16 @@ std::string Table(const RunSummary& run) {
     std::ostringstream text;
     text << std::fixed << std::setprecision(1);
     text << run.frames << " panoramas in " << run.duration_s << " s";
-    if (run.duration_s > 0) text << " (" << static_cast<double>(run.frames) / run.duration_s << " fps)";
-    text << ", " << run.dropped << " dropped, " << run.deadline_misses << " longer than a period of "
-         << run.period_ms << " ms\n"
+    if (run.duration_s > 0)
+        text << " (" << static_cast<double>(run.frames) / run.duration_s << " fps)";
+    text << ", " << run.dropped << " dropped, " << run.deadline_misses
+         << " longer than a period of " << run.period_ms << " ms\n"
          << std::setprecision(2) << "  stage      p50 ms   p99 ms   max ms\n";
     for (int i = 0; i < kStages; ++i) {
         const StageTimes::Summary s = run.times[static_cast<std::size_t>(i)].Summarise();
-        text << "  " << std::left << std::setw(8) << ToString(static_cast<Stage>(i)) << std::right << std::setw(9)
-             << s.p50_ms << std::setw(9) << s.p99_ms << std::setw(9) << s.max_ms << '\n';
+        text << "  " << std::left << std::setw(8) << ToString(static_cast<Stage>(i)) << std::right
+             << std::setw(9) << s.p50_ms << std::setw(9) << s.p99_ms << std::setw(9) << s.max_ms
+             << '\n';
     }
     return text.str();
 }

@@ -8,8 +8,8 @@
 
 namespace hitchview::app {
 
-/// report.json of a run. What cannot be known is null: `units` and `seams` need the written videos to
-/// be measured (`quality`, from Evaluate; null otherwise).
+/// report.json of a run. What cannot be known is null: `units` and `seams` need the written videos
+/// to be measured (`quality`, from Evaluate; null otherwise).
 nlohmann::json MakeReport(const RunSummary& run, const nlohmann::json& quality);
 
 /// Empty on success, otherwise why the file could not be written.

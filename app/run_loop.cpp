@@ -17,15 +17,18 @@ algo::UnifiedVertexMotionOptions MotionOptions(const RigConfig& config, const Ru
     algo::UnifiedVertexMotionOptions motion;
     motion.stabilize = config.stabilization.enabled;
     motion.stitch = config.stitching.enabled;
-    motion.lookahead_frames = options.lookahead_frames.value_or(config.stabilization.lookahead_frames);
-    motion.border = config.stabilization.border == StabilizationConfig::Border::kCovered ? algo::Border::kCovered
-                                                                                         : algo::Border::kFree;
+    motion.lookahead_frames =
+        options.lookahead_frames.value_or(config.stabilization.lookahead_frames);
+    motion.border = config.stabilization.border == StabilizationConfig::Border::kCovered
+                        ? algo::Border::kCovered
+                        : algo::Border::kFree;
     motion.cropping = config.stabilization.cropping;
     motion.kappa = config.stitching.kappa;
     if (config.placement) {
         for (const algo::Unit unit : algo::kUnits) {
             const Corner& corner = (*config.placement)[unit];
-            if (config.HasUnit(unit)) motion.placement[unit] = Eigen::Vector2d(corner.x_px, corner.y_px);
+            if (config.HasUnit(unit))
+                motion.placement[unit] = Eigen::Vector2d(corner.x_px, corner.y_px);
         }
     }
     return motion;
@@ -66,15 +69,21 @@ hal::Checked<hal::Done> Prime(Board& board, Pipeline& pipeline) {
 /// Drives one opened rig; see RunRig.
 class Run {
  public:
-    Run(Board& board, Pipeline& pipeline, RunOutputs& outputs, const RunOptions& options, RunSummary& summary)
-        : board_(board), pipeline_(pipeline), outputs_(outputs), options_(options), summary_(summary) {}
+    Run(Board& board, Pipeline& pipeline, RunOutputs& outputs, const RunOptions& options,
+        RunSummary& summary)
+        : board_(board),
+          pipeline_(pipeline),
+          outputs_(outputs),
+          options_(options),
+          summary_(summary) {}
 
     hal::Checked<hal::Done> Loop(const std::atomic<bool>& stop, const ShownHook& hook) {
         FrameSynchronizer synchronizer(board_.cameras());
         start_ = board_.clock().Now();
         outputs_.Start(start_);
         std::uint64_t taken = 0;
-        while (!stop && (!options_.frames || taken < static_cast<std::uint64_t>(*options_.frames))) {
+        while (!stop &&
+               (!options_.frames || taken < static_cast<std::uint64_t>(*options_.frames))) {
             auto set = synchronizer.WaitSet();
             if (!set && set.error() == hal::Error::kEndOfStream) break;
             if (!set) return CameraFailure(set.error());
@@ -107,14 +116,16 @@ class Run {
     }
 
     void CountDeadline() {
-        summary_.newest_total_ms = pipeline_.times()[static_cast<std::size_t>(Stage::kTotal)].last_ms();
+        summary_.newest_total_ms =
+            pipeline_.times()[static_cast<std::size_t>(Stage::kTotal)].last_ms();
         if (summary_.newest_total_ms > summary_.period_ms) ++summary_.deadline_misses;
     }
 
     hal::Checked<hal::Done> Show(const ShownPanorama& shown, const ShownHook& hook) {
         ++summary_.frames;
         for (const algo::Overlap overlap : algo::kOverlaps) {
-            if (shown.composition->seams[overlap] == algo::SeamState::kLocked) ++summary_.locked_frames[overlap];
+            if (shown.composition->seams[overlap] == algo::SeamState::kLocked)
+                ++summary_.locked_frames[overlap];
         }
         const auto done = outputs_.Show(shown, pipeline_, summary_);
         if (done && hook) hook(shown, pipeline_);

@@ -12,14 +12,14 @@
 namespace hitchview::app {
 
 struct RunOptions {
-    std::filesystem::path out{};            ///< folder for report and videos; empty: none are written
-    std::optional<int> frames{};            ///< at most so many frame sets
+    std::filesystem::path out{};  ///< folder for report and videos; empty: none are written
+    std::optional<int> frames{};  ///< at most so many frame sets
     std::optional<int> lookahead_frames{};  ///< instead of the rig file's
     std::optional<int> workers{};           ///< instead of the rig file's
-    bool realtime = false;                ///< one frame set per period; late ones are dropped
-    bool write_video = false;             ///< out/panorama.avi
-    bool write_views = false;             ///< out/tractor.avi, out/trailer.avi
-    bool publish = false;                 ///< over LCM
+    bool realtime = false;                  ///< one frame set per period; late ones are dropped
+    bool write_video = false;               ///< out/panorama.avi
+    bool write_views = false;               ///< out/tractor.avi, out/trailer.avi
+    bool publish = false;                   ///< over LCM
 };
 
 /// What a run did.
@@ -28,10 +28,10 @@ struct RunSummary {
     std::uint64_t dropped = 0;          ///< frame sets never shown
     std::uint64_t deadline_misses = 0;  ///< frame sets that took longer than a period
     double period_ms = 0;
-    double duration_s = 0;              ///< from the first frame set to the last panorama
+    double duration_s = 0;  ///< from the first frame set to the last panorama
     std::string calibration_id;
-    double newest_total_ms = 0;         ///< of the frame set processed last
-    AllStageTimes times{};              ///< when the run has ended
+    double newest_total_ms = 0;  ///< of the frame set processed last
+    AllStageTimes times{};       ///< when the run has ended
     algo::PerOverlap<std::uint64_t> locked_frames;
     algo::PerUnit<int> cameras;
     bool ring = false;

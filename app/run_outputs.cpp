@@ -7,10 +7,14 @@ namespace {
 
 hal::SeamState ToHal(algo::SeamState state) {
     switch (state) {
-        case algo::SeamState::kNoOverlap: return hal::SeamState::kNoOverlap;
-        case algo::SeamState::kReacquire: return hal::SeamState::kReacquire;
-        case algo::SeamState::kCoast: return hal::SeamState::kCoast;
-        case algo::SeamState::kLocked: return hal::SeamState::kLocked;
+        case algo::SeamState::kNoOverlap:
+            return hal::SeamState::kNoOverlap;
+        case algo::SeamState::kReacquire:
+            return hal::SeamState::kReacquire;
+        case algo::SeamState::kCoast:
+            return hal::SeamState::kCoast;
+        case algo::SeamState::kLocked:
+            return hal::SeamState::kLocked;
     }
     return hal::SeamState::kNoOverlap;
 }
@@ -37,11 +41,13 @@ hal::PanoramaStatus Status(const ShownPanorama& shown, const RunSummary& run, ha
 
 }  // namespace
 
-hal::Checked<std::unique_ptr<RunOutputs>> RunOutputs::Open(const RigConfig& config, const RunOptions& options,
-                                                           Board& board, const RunSummary& run,
+hal::Checked<std::unique_ptr<RunOutputs>> RunOutputs::Open(const RigConfig& config,
+                                                           const RunOptions& options, Board& board,
+                                                           const RunSummary& run,
                                                            const hal::FrameFormat& format) {
     std::unique_ptr<RunOutputs> outputs(new RunOutputs);
-    if (const auto videos = outputs->OpenVideos(options, run, format); !videos) return videos.error();
+    if (const auto videos = outputs->OpenVideos(options, run, format); !videos)
+        return videos.error();
     if (const auto network = outputs->OpenNetwork(config, options, board, run, format); !network) {
         return network.error();
     }
@@ -50,9 +56,11 @@ hal::Checked<std::unique_ptr<RunOutputs>> RunOutputs::Open(const RigConfig& conf
 
 hal::Checked<hal::Done> RunOutputs::OpenVideos(const RunOptions& options, const RunSummary& run,
                                                const hal::FrameFormat& format) {
-    const auto open = [&](const char* name, std::unique_ptr<VideoWriter>& video) -> hal::Checked<hal::Done> {
+    const auto open = [&](const char* name,
+                          std::unique_ptr<VideoWriter>& video) -> hal::Checked<hal::Done> {
         const std::string path = (options.out / (std::string(name) + ".avi")).string();
-        auto opened = VideoWriter::Open(path, format, {.name = name, .rate_hz = 1000 / run.period_ms});
+        auto opened =
+            VideoWriter::Open(path, format, {.name = name, .rate_hz = 1000 / run.period_ms});
         if (!opened) return opened.error();
         video = std::move(*opened);
         return hal::Done{};
@@ -92,13 +100,15 @@ void RunOutputs::Start(hal::Instant start) {
     if (publisher_) publisher_->StartRecording(start);
 }
 
-hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& pipeline, const RunSummary& run) {
+hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& pipeline,
+                                         const RunSummary& run) {
     if (publisher_) Publish(shown, run);
     const std::string full = "cannot write the video: ";
     if (panorama_ && !panorama_->Append(shown.picture)) return full + panorama_->Finish().error();
     for (const algo::Unit unit : algo::kUnits) {
         if (!views_[unit]) continue;
-        if (!views_[unit]->Append(pipeline.RenderView(unit))) return full + views_[unit]->Finish().error();
+        if (!views_[unit]->Append(pipeline.RenderView(unit)))
+            return full + views_[unit]->Finish().error();
     }
     return hal::Done{};
 }

@@ -15,22 +15,26 @@ class Board;
 /// Where the panoramas of a run go: videos and the network.
 class RunOutputs {
  public:
-    static hal::Checked<std::unique_ptr<RunOutputs>> Open(const RigConfig& config, const RunOptions& options,
-                                                          Board& board, const RunSummary& run,
+    static hal::Checked<std::unique_ptr<RunOutputs>> Open(const RigConfig& config,
+                                                          const RunOptions& options, Board& board,
+                                                          const RunSummary& run,
                                                           const hal::FrameFormat& format);
 
     /// Once, before the first Show: CLOCK_MONOTONIC moment of the recording's moment 0.
     void Start(hal::Instant start);
     /// `run`: counts so far.
-    hal::Checked<hal::Done> Show(const ShownPanorama& shown, Pipeline& pipeline, const RunSummary& run);
+    hal::Checked<hal::Done> Show(const ShownPanorama& shown, Pipeline& pipeline,
+                                 const RunSummary& run);
     hal::Checked<hal::Done> Finish();
     [[nodiscard]] std::uint64_t dropped() const { return publisher_ ? publisher_->dropped() : 0; }
 
  private:
     RunOutputs() = default;
-    hal::Checked<hal::Done> OpenVideos(const RunOptions& options, const RunSummary& run, const hal::FrameFormat& format);
-    hal::Checked<hal::Done> OpenNetwork(const RigConfig& config, const RunOptions& options, Board& board,
-                                        const RunSummary& run, const hal::FrameFormat& format);
+    hal::Checked<hal::Done> OpenVideos(const RunOptions& options, const RunSummary& run,
+                                       const hal::FrameFormat& format);
+    hal::Checked<hal::Done> OpenNetwork(const RigConfig& config, const RunOptions& options,
+                                        Board& board, const RunSummary& run,
+                                        const hal::FrameFormat& format);
     void Publish(const ShownPanorama& shown, const RunSummary& run);
 
     hal::Instant start_{};

@@ -11,7 +11,8 @@ enum class Stage { kMotion, kMap, kGains, kRender, kTotal };
 inline constexpr int kStages = 5;
 
 constexpr std::string_view ToString(Stage stage) {
-    constexpr std::array<std::string_view, kStages> kNames{"motion", "map", "gains", "render", "total"};
+    constexpr std::array<std::string_view, kStages> kNames{"motion", "map", "gains", "render",
+                                                           "total"};
     return kNames[static_cast<std::size_t>(stage)];
 }
 
@@ -27,7 +28,9 @@ class StageTimes {
     };
     /// Of the window; all 0 before the first Add. `max_ms` is since the start.
     [[nodiscard]] Summary Summarise() const;
-    [[nodiscard]] double last_ms() const { return count_ == 0 ? 0 : window_ms_[(count_ - 1) % kWindow]; }
+    [[nodiscard]] double last_ms() const {
+        return count_ == 0 ? 0 : window_ms_[(count_ - 1) % kWindow];
+    }
 
  private:
     std::array<float, kWindow> window_ms_{};
@@ -41,7 +44,8 @@ using AllStageTimes = std::array<StageTimes, kStages>;
 class StageTimer {
  public:
     StageTimer(AllStageTimes& times, Stage stage)
-        : times_(times[static_cast<std::size_t>(stage)]), start_(std::chrono::steady_clock::now()) {}
+        : times_(times[static_cast<std::size_t>(stage)]),
+          start_(std::chrono::steady_clock::now()) {}
     ~StageTimer() { times_.Add(std::chrono::steady_clock::now() - start_); }
     StageTimer(const StageTimer&) = delete;
     StageTimer& operator=(const StageTimer&) = delete;

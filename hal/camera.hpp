@@ -16,8 +16,8 @@ class Camera {
     [[nodiscard]] const FrameFormat& format() const { return DoFormat(); }
 
     /// Blocks until a frame is ready, at most `timeout` (> 0).
-    /// kTimeout: none came; ordinary. kEndOfStream: the recording is over. kCorrupted: this frame is
-    /// damaged, the next may be good. kDisconnected: the device is gone; reopen it.
+    /// kTimeout: none came; ordinary. kEndOfStream: the recording is over. kCorrupted: this frame
+    /// is damaged, the next may be good. kDisconnected: the device is gone; reopen it.
     Result<FrameLease> WaitFrame(std::chrono::milliseconds timeout) {
         HV_EXPECT(timeout.count() > 0);
         return DoWaitFrame(timeout);

@@ -24,7 +24,8 @@ enum class Range : std::uint8_t {
     kLimited,  ///< Y 16..235, as in television
 };
 
-/// Size and layout of the frames of one camera; fixed while the camera is open. Even width and height.
+/// Size and layout of the frames of one camera; fixed while the camera is open. Even width and
+/// height.
 struct FrameFormat {
     int width_px = 0;
     int height_px = 0;
@@ -57,10 +58,13 @@ constexpr std::size_t FrameBytes(const FrameFormat& format) {
         static_cast<std::size_t>(format.width_px) * static_cast<std::size_t>(format.height_px);
     switch (format.pixel_format) {
         case PixelFormat::kNv12:
-        case PixelFormat::kI420: return pixels * 3 / 2;
+        case PixelFormat::kI420:
+            return pixels * 3 / 2;
         case PixelFormat::kUyvy:
-        case PixelFormat::kYuyv: return pixels * 2;
-        case PixelFormat::kGrey: return pixels;
+        case PixelFormat::kYuyv:
+            return pixels * 2;
+        case PixelFormat::kGrey:
+            return pixels;
     }
     return 0;
 }
@@ -70,13 +74,16 @@ constexpr std::array<Plane, 3> PackedPlanes(const FrameFormat& format, const std
     const int width = format.width_px;
     const std::ptrdiff_t luma = static_cast<std::ptrdiff_t>(width) * format.height_px;
     switch (format.pixel_format) {
-        case PixelFormat::kNv12: return {Plane{data, width}, Plane{data + luma, width}, Plane{}};
+        case PixelFormat::kNv12:
+            return {Plane{data, width}, Plane{data + luma, width}, Plane{}};
         case PixelFormat::kI420:
             return {Plane{data, width}, Plane{data + luma, width / 2},
                     Plane{data + luma + luma / 4, width / 2}};
         case PixelFormat::kUyvy:
-        case PixelFormat::kYuyv: return {Plane{data, 2 * width}, Plane{}, Plane{}};
-        case PixelFormat::kGrey: return {Plane{data, width}, Plane{}, Plane{}};
+        case PixelFormat::kYuyv:
+            return {Plane{data, 2 * width}, Plane{}, Plane{}};
+        case PixelFormat::kGrey:
+            return {Plane{data, width}, Plane{}, Plane{}};
     }
     return {};
 }

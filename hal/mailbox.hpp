@@ -11,9 +11,7 @@ template <typename T>
 class Mailbox {
  public:
     T& writable() { return slots_[write_]; }
-    void Publish() {
-        write_ = Slot(between_.exchange(write_ | kFresh, std::memory_order_acq_rel));
-    }
+    void Publish() { write_ = Slot(between_.exchange(write_ | kFresh, std::memory_order_acq_rel)); }
 
     /// False if nothing new was published since the last Take.
     bool Take() {

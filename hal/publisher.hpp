@@ -16,23 +16,27 @@ enum class SeamState : std::uint8_t { kNoOverlap = 0, kReacquire = 1, kCoast = 2
 
 constexpr const char* ToString(SeamState state) {
     switch (state) {
-        case SeamState::kNoOverlap: return "NO_OVERLAP";
-        case SeamState::kReacquire: return "REACQUIRE";
-        case SeamState::kCoast: return "COAST";
-        case SeamState::kLocked: return "LOCKED";
+        case SeamState::kNoOverlap:
+            return "NO_OVERLAP";
+        case SeamState::kReacquire:
+            return "REACQUIRE";
+        case SeamState::kCoast:
+            return "COAST";
+        case SeamState::kLocked:
+            return "LOCKED";
     }
     return "UNKNOWN";
 }
 
 /// A compressed panorama, borrowed for the call.
 struct PanoramaImage {
-    std::uint32_t sequence = 0;   ///< frame set it shows; a gap is a panorama that was dropped
-    Instant captured_from{};      ///< start of the oldest exposure used
-    Instant captured_until{};     ///< start of the newest exposure used
+    std::uint32_t sequence = 0;  ///< frame set it shows; a gap is a panorama that was dropped
+    Instant captured_from{};     ///< start of the oldest exposure used
+    Instant captured_until{};    ///< start of the newest exposure used
     int width_px = 0;
     int height_px = 0;
-    std::uint32_t cameras_missing = 0;   ///< bit i: camera i of the rig shows no data
-    std::string_view calibration_id{};   ///< empty for a rig without calibration
+    std::uint32_t cameras_missing = 0;  ///< bit i: camera i of the rig shows no data
+    std::string_view calibration_id{};  ///< empty for a rig without calibration
     std::span<const std::uint8_t> jpeg{};
 };
 
@@ -42,12 +46,12 @@ struct PanoramaStatus {
     Instant captured_from{};
     Instant published_at{};
     std::uint32_t cameras_missing = 0;
-    std::array<SeamState, 2> seams{};        ///< left, right
-    std::array<int, 2> seam_matches{};       ///< inliers in this frame set
-    std::array<int, 2> unit_features{};      ///< tracked intra features: tractor, trailer
-    double total_ms = 0;                     ///< processing of this frame set
-    std::uint64_t deadline_misses = 0;       ///< since start
-    std::uint64_t dropped = 0;               ///< frame sets never shown, since start
+    std::array<SeamState, 2> seams{};    ///< left, right
+    std::array<int, 2> seam_matches{};   ///< inliers in this frame set
+    std::array<int, 2> unit_features{};  ///< tracked intra features: tractor, trailer
+    double total_ms = 0;                 ///< processing of this frame set
+    std::uint64_t deadline_misses = 0;   ///< since start
+    std::uint64_t dropped = 0;           ///< frame sets never shown, since start
 };
 
 /// Hands results to the display units. Borrowed data is copied or sent before the call returns.
@@ -56,7 +60,8 @@ class Publisher {
  public:
     virtual ~Publisher() = default;
 
-    /// kTooLarge: the image does not fit the encode buffer taken at start. kFailed: the socket refused.
+    /// kTooLarge: the image does not fit the encode buffer taken at start. kFailed: the socket
+    /// refused.
     Result<Done> Publish(const PanoramaImage& image) { return DoPublish(image); }
     Result<Done> Publish(const PanoramaStatus& status) { return DoPublish(status); }
     Result<Done> Publish(const HitchAngle& angle) { return DoPublish(angle); }

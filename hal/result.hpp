@@ -22,14 +22,22 @@ enum class Error {
 
 constexpr const char* ToString(Error error) {
     switch (error) {
-        case Error::kTimeout: return "timeout";
-        case Error::kEndOfStream: return "end of stream";
-        case Error::kDisconnected: return "disconnected";
-        case Error::kCorrupted: return "corrupted";
-        case Error::kUnsupported: return "unsupported";
-        case Error::kNotFound: return "not found";
-        case Error::kTooLarge: return "too large";
-        case Error::kFailed: return "failed";
+        case Error::kTimeout:
+            return "timeout";
+        case Error::kEndOfStream:
+            return "end of stream";
+        case Error::kDisconnected:
+            return "disconnected";
+        case Error::kCorrupted:
+            return "corrupted";
+        case Error::kUnsupported:
+            return "unsupported";
+        case Error::kNotFound:
+            return "not found";
+        case Error::kTooLarge:
+            return "too large";
+        case Error::kFailed:
+            return "failed";
     }
     return "unknown";
 }

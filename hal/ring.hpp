@@ -13,7 +13,8 @@ namespace hitchview::hal {
 /// Writer thread: Append. Reader thread: Take. Any thread: refused.
 template <typename T, std::size_t kCapacity>
 class Ring {
-    static_assert(kCapacity > 0 && (kCapacity & (kCapacity - 1)) == 0, "capacity is a power of two");
+    static_assert(kCapacity > 0 && (kCapacity & (kCapacity - 1)) == 0,
+                  "capacity is a power of two");
 
  public:
     /// False if the ring is full; `item` is then left alone.

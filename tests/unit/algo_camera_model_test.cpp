@@ -1,8 +1,8 @@
-#include "algo/camera_model.hpp"
-
 #include <gtest/gtest.h>
 
 #include <opencv2/calib3d.hpp>
+
+#include "algo/camera_model.hpp"
 
 namespace hitchview::algo {
 namespace {
