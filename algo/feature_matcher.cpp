@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algo/feature_mask.hpp"
+
 namespace hitchview::algo {
 namespace {
 
 using Eigen::Vector2f;
-
-bool Allowed(const cv::Mat1b& mask, const Vector2f& point) {
-    const auto x = static_cast<int>(std::lround(point.x()));
-    const auto y = static_cast<int>(std::lround(point.y()));
-    return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask(y, x) != 0;
-}
 
 struct Nearest {
     int index = -1;
@@ -79,7 +75,7 @@ bool ClassicalMatcher::Align(const PerUnit<MatchView>& views, Unit from, const V
     const auto match =
         AlignPatch(*here.pyramid, *there.pyramid, at, guess, coarsest, options_.alignment);
     if (!match || match->correlation < options_.min_correlation ||
-        !Allowed(*there.mask, match->position_px)) {
+        !Allows(*there.mask, match->position_px)) {
         return false;
     }
     const auto back =
@@ -126,7 +122,7 @@ void ClassicalMatcher::Describe(const MatchView& view, const cv::Rect& region,
         for (const Corner& corner : corners_) {
             const Vector2f at = corner.position_px * scale;
             if (!region.contains(cv::Point(static_cast<int>(at.x()), static_cast<int>(at.y()))) ||
-                !Allowed(*view.mask, at)) {
+                !Allows(*view.mask, at)) {
                 continue;
             }
             const auto descriptor = DescribePatch(*view.pyramid, l, corner.position_px);

@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algo/feature_mask.hpp"
+
 namespace hitchview::algo {
-namespace {
 
 using Eigen::Vector2f;
-
-bool Allowed(const cv::Mat1b& mask, const Vector2f& point) {
-    const auto x = static_cast<int>(std::lround(point.x()));
-    const auto y = static_cast<int>(std::lround(point.y()));
-    return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask(y, x) != 0;
-}
-
-}  // namespace
 
 FeatureTracker::FeatureTracker(int width_px, int height_px, const FeatureTrackerOptions& options)
     : options_(options), detector_(width_px, height_px, options.corners) {}
@@ -34,7 +27,7 @@ void FeatureTracker::FollowFeatures(const GreyPyramid& early, const GreyPyramid&
         const auto there =
             AlignPatch(early, late, from, from, options_.coarsest_level, options_.alignment);
         if (!there || there->correlation < options_.min_correlation ||
-            !Allowed(mask, there->position_px)) {
+            !Allows(mask, there->position_px)) {
             continue;
         }
         const auto back = AlignPatch(late, early, there->position_px, from, 0, options_.alignment);

@@ -94,6 +94,13 @@ Matrix3d ToPose(const Projection& projection, const PoseOffset& offset) {
     return PlaneAbout(projection.Centre(), offset.value.head<2>(), offset.value.z());
 }
 
+Matrix3d ZoomAbout(const Vector2d& centre, double zoom) {
+    Matrix3d m = Matrix3d::Identity();
+    m(0, 0) = m(1, 1) = zoom;
+    m.topRightCorner<2, 1>() = (1 - zoom) * centre;
+    return m;
+}
+
 double ScaleOf(const Projection& projection, const Matrix3d& pose) {
     if (projection.IsRing()) return 1;
     return std::sqrt(std::abs(pose.topLeftCorner<2, 2>().determinant())) / std::abs(pose(2, 2));

@@ -58,6 +58,9 @@ struct PoseOffset {
 PoseOffset ToOffset(const Projection& projection, const Eigen::Matrix3d& pose);
 Eigen::Matrix3d ToPose(const Projection& projection, const PoseOffset& offset);
 
+/// Plane pose that zooms by `zoom` and leaves `centre` where it is.
+Eigen::Matrix3d ZoomAbout(const Eigen::Vector2d& centre, double zoom);
+
 /// Scale of a plane pose at the picture's centre; 1 on a ring.
 double ScaleOf(const Projection& projection, const Eigen::Matrix3d& pose);
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "algo/feature_mask.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -12,8 +13,6 @@ using Eigen::Vector2d;
 using Eigen::Vector2f;
 using Eigen::Vector3d;
 
-/// Pairs farther from the rigid placement than this are another thing, not parallax; canvas px.
-constexpr double kMaxParallax_px = 24;
 /// The per-vertex offset: share kept per frame, and its bound (shake is above 1 Hz, the road
 /// below).
 constexpr float kResidualKept = 0.80F;
@@ -26,101 +25,7 @@ constexpr int kFewestCandidates = 12;
 constexpr int kLockedInliers = 12;
 constexpr int kCoastFrames = 60;
 
-double AnalysisScale(const Projection& view) {
-    if (view.IsRing()) return std::min(1.0, 1024.0 / view.width_px);
-    return view.width_px > 960 ? 0.5 : 1.0;
-}
-
-UnitAnalysisOptions AnalysisOptions(const Projection& view) {
-    UnitAnalysisOptions options;
-    options.scale = AnalysisScale(view);
-    options.field.robust.max_sigma_px = 1.0 / options.scale;
-    options.field.max_residual_px = 3.0 / options.scale;
-    options.field.propagation = {.radius_px = {0.16 * view.width_px, 0.25 * view.height_px},
-                                 .min_votes = 4,
-                                 .shrink_votes = 6};
-    if (view.IsRing()) options.field.propagation.radius_px.x() = 0.06 * view.width_px;
-    return options;
-}
-
-StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double kappa) {
-    StitchingMotionFieldOptions options;
-    options.kappa = kappa;
-    options.propagation = {.radius_px = {0.05 * canvas.width_px, 0.2 * canvas.height_px},
-                           .min_votes = 3,
-                           .shrink_votes = 3};
-    options.max_discrepancy_px = kMaxParallax_px;
-    // Round a vehicle near and far things mix in an overlap, and single measurements jump.
-    if (canvas.IsRing()) options.gain = 0.3;
-    return options;
-}
-
-/// Bounds of a unit's offset: shift in px of the view, turn in rad.
-Vector3d Wall(const Projection& view, const UnifiedVertexMotionOptions& options) {
-    constexpr double kDegree = std::numbers::pi / 180;
-    // A ring has no border sideways: there the bound is the lag of the heading in a bend.
-    if (view.IsRing()) return {8 * kDegree * view.focal_px, 3 * kDegree, 3 * kDegree};
-    if (options.border == Border::kFree) return {0.28 * view.width_px, 0.28 * view.height_px, 0.06};
-    const double margin = 0.5 * (1 - options.cropping);
-    // The turn eats its share of the shift's margin: half the diagonal times the turn.
-    const double turn = 0.25 * margin;
-    return {margin * view.width_px - 0.5 * turn * view.height_px,
-            margin * view.height_px - 0.5 * turn * view.width_px, turn};
-}
-
-PathSmootherOptions SmootherOptions(const Projection& view,
-                                    const UnifiedVertexMotionOptions& options) {
-    PathSmootherOptions smoother;
-    smoother.lookahead_frames = options.lookahead_frames;
-    smoother.wall = Wall(view, options);
-    if (view.IsRing()) {  // steering is slow and a vehicle's shake fast: no need to hold back
-                          // longer
-        smoother.weakest_pull = 1e-3;
-        smoother.strongest_pull = 0.1;
-    }
-    return smoother;
-}
-
-PathSmootherOptions HitchSmootherOptions(const Projection& view) {
-    PathSmootherOptions smoother;
-    smoother.weakest_pull = 0.03;
-    smoother.strongest_pull = 3.0;
-    smoother.wall = {8, view.IsRing() ? 0.02 : 8, view.IsRing() ? 0.02 : 0.03};
-    return smoother;
-}
-
-Matrix3d Shift(const Vector2d& by) {
-    Matrix3d m = Matrix3d::Identity();
-    m.topRightCorner<2, 1>() = by;
-    return m;
-}
-
-Matrix3d ZoomAbout(const Vector2d& centre, double zoom) {
-    Matrix3d m = Matrix3d::Identity();
-    m(0, 0) = m(1, 1) = zoom;
-    m.topRightCorner<2, 1>() = (1 - zoom) * centre;
-    return m;
-}
-
-Vector2d Size(const Projection& picture) {
-    return {double(picture.width_px), double(picture.height_px)};
-}
-
 }  // namespace
-
-Vector2d ToCanvas(const Projection& canvas, const Projection& view, const Composition& composition,
-                  Unit unit, const Vector3d& view_ray) {
-    const Vector2d view_px = view.Pixel(view_ray);
-    const Vector2d moved = view_px + Sample(Mesh(view), composition.view_offset[unit], view_px);
-    const Vector2d placed = canvas.Pixel(composition.M_canvas_view[unit] * view.Ray(moved));
-    const double moves = unit == Unit::kTractor ? -composition.kappa : 1 - composition.kappa;
-    const Mesh mesh(canvas);
-    constexpr int kSteps = 6;  // fixed point of shown = placed - moves e(shown)
-    Vector2d shown = placed;
-    for (int i = 0; i < kSteps; ++i)
-        shown = placed - moves * Sample(mesh, composition.discrepancy, shown);
-    return shown;
-}
 
 /// What one frame set told, kept until it is emitted.
 struct UnifiedVertexMotion::Record {
@@ -140,13 +45,13 @@ class UnifiedVertexMotion::Guidance final : public Expectation {
     Guidance(const UnifiedVertexMotion& owner, Overlap overlap, int& candidates)
         : owner_(owner), overlap_(overlap), candidates_(candidates) {
         const Matrix3d M_canvas_tractor =
-            owner.M_canvas_tractor_ * owner.stabilizer_[Unit::kTractor][0];
+            owner.layout_.M_canvas_tractor * owner.stabilizer_[Unit::kTractor][0];
         M_canvas_view_[Unit::kTractor] = M_canvas_tractor;
         M_canvas_view_[Unit::kTrailer] = M_canvas_tractor * owner.placement_->M_tractor_trailer();
         if (owner.hitch_known_) {  // the field starts from the smoothed placement
             const Matrix3d smoothed = owner.hitch_pose_[0] * owner.raw_hitch_pose_.inverse();
-            M_canvas_view_[Unit::kTrailer] = owner.M_canvas_tractor_ * smoothed *
-                                             owner.M_canvas_tractor_.inverse() *
+            M_canvas_view_[Unit::kTrailer] = owner.layout_.M_canvas_tractor * smoothed *
+                                             owner.layout_.M_canvas_tractor.inverse() *
                                              M_canvas_view_[Unit::kTrailer];
         }
     }
@@ -166,7 +71,7 @@ class UnifiedVertexMotion::Guidance final : public Expectation {
         const Vector2d expected =
             owner_.view(opposite).Pixel(M_canvas_other.inverse() * owner_.canvas_.Ray(there));
         other = owner_.analysis_[opposite]->view().ToAnalysis(expected);
-        if (!Visible(opposite, other)) return false;
+        if (!Allows(owner_.analysis_[opposite]->view().mask(), other)) return false;
         ++candidates_;
         return true;
     }
@@ -175,12 +80,6 @@ class UnifiedVertexMotion::Guidance final : public Expectation {
     bool InOverlap(const Vector2d& canvas_px) const {
         if (!owner_.canvas_.IsRing()) return overlap_ == Overlap::kRight;
         return (canvas_px.x() < owner_.canvas_.Centre().x()) == (overlap_ == Overlap::kLeft);
-    }
-    bool Visible(Unit unit, const Vector2f& pixel) const {
-        const cv::Mat1b& mask = owner_.analysis_[unit]->view().mask();
-        const auto x = static_cast<int>(std::lround(pixel.x()));
-        const auto y = static_cast<int>(std::lround(pixel.y()));
-        return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask(y, x) != 0;
     }
 
     const UnifiedVertexMotion& owner_;
@@ -202,7 +101,7 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
         if (!geometry[unit]) continue;
         analysis_[unit] =
             std::make_unique<UnitAnalysis>(*geometry[unit], AnalysisOptions(view(unit)));
-        smoother_[unit] = std::make_unique<PathSmoother>(SmootherOptions(view(unit), options));
+        smoother_[unit] = std::make_unique<PathSmoother>(StabilizerOptions(view(unit), options));
     }
     if (has_trailer()) {
         const SemiSurroundView& a = analysis_[Unit::kTractor]->view();
@@ -210,11 +109,8 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
         matcher_ = std::make_unique<ClassicalMatcher>(std::max(a.width_px(), b.width_px()),
                                                       std::max(a.height_px(), b.height_px()),
                                                       ClassicalMatcherOptions{});
-        TrailerPlacementOptions placement;
-        if (canvas.IsRing()) placement.gain = 0.3;
-        placement.robust.max_sigma_px /= a.scale();
-        placement.acquire.max_sigma_px /= a.scale();
-        placement_ = std::make_unique<TrailerPlacement>(tractor_view_, *trailer_view_, placement);
+        placement_ = std::make_unique<TrailerPlacement>(tractor_view_, *trailer_view_,
+                                                        PlacementOptions(canvas, a.scale()));
         hitch_smoother_ = std::make_unique<PathSmoother>(HitchSmootherOptions(tractor_view_));
     }
     LayOut();
@@ -244,40 +140,10 @@ void UnifiedVertexMotion::Reset() {
     for (const Overlap overlap : kOverlaps) frames_unmatched_[overlap] = kCoastFrames;
 }
 
-/// The canvas for the placement as it is known now. A ring lies in the tractor's frame.
 void UnifiedVertexMotion::LayOut() {
-    M_canvas_tractor_.setIdentity();
-    M_loose_[Unit::kTractor] = M_loose_[Unit::kTrailer] = Matrix3d::Identity();
-    if (canvas_.IsRing()) return;
-
-    const Vector2d canvas = Size(canvas_);
-    const Vector2d tractor = Size(tractor_view_);
-    Vector2d low = Vector2d::Zero();
-    Vector2d high = tractor;
-    if (has_trailer() && placement_->acquired()) {
-        const Vector2d size = Size(*trailer_view_);
-        for (const Vector2d& corner :
-             {Vector2d(0, 0), Vector2d(size.x(), 0), Vector2d(0, size.y()), size}) {
-            const Vector2d p =
-                (placement_->M_tractor_trailer() * corner.homogeneous()).hnormalized();
-            low = low.cwiseMin(p);
-            high = high.cwiseMax(p);
-        }
-    }
-    M_canvas_tractor_ = Shift(0.5 * (canvas - (low + high)));
-    if (has_trailer() && !placement_->acquired()) {
-        M_canvas_tractor_ = Shift({0, 0.5 * (canvas.y() - tractor.y())});
-        const Vector2d trailer = Size(*trailer_view_);
-        M_loose_[Unit::kTrailer] =
-            Shift({canvas.x() - trailer.x(), 0.5 * (canvas.y() - trailer.y())});
-    }
-    const auto& place = options_.placement;
-    if (place[Unit::kTractor]) M_canvas_tractor_ = Shift(*place[Unit::kTractor]);
-    if (place[Unit::kTrailer]) M_loose_[Unit::kTrailer] = Shift(*place[Unit::kTrailer]);
-    const double zoom = options_.border == Border::kCovered ? 1 / options_.cropping : 1.0;
-    const Matrix3d zoomed = ZoomAbout(canvas_.Centre(), zoom);
-    M_canvas_tractor_ = zoomed * M_canvas_tractor_;
-    M_loose_[Unit::kTrailer] = zoomed * M_loose_[Unit::kTrailer];
+    const Matrix3d* matched =
+        has_trailer() && placement_->acquired() ? &placement_->M_tractor_trailer() : nullptr;
+    layout_ = LayOutCanvas(canvas_, tractor_view_, trailer_view_, matched, options_);
 }
 
 bool UnifiedVertexMotion::Prime(const RigFrames& frames, TaskRunner& runner) {
@@ -314,14 +180,21 @@ void UnifiedVertexMotion::Analyse(const RigFrames& frames, TaskRunner& runner, R
 void UnifiedVertexMotion::MatchUnits(Record& record) {
     placement_->Predict(record.intra);
     for (const Overlap overlap : kOverlaps) record.inter[overlap].clear();
-    if (placement_->acquired()) {
-        Guide(record);
-    } else if (analysed_ % kAcquireEvery == 0) {
+    const bool lost = !placement_->acquired() || LongUnmatched();
+    if (lost && analysed_ % kAcquireEvery == 0) {
         AcquireTrailer(record);
+    } else if (placement_->acquired()) {
+        Guide(record);
     }
     UpdateSeams(record);
     record.M_tractor_trailer = placement_->M_tractor_trailer();
     record.placed = placement_->acquired();
+}
+
+/// No overlap has agreed with the placement for so long that it is searched from nothing.
+bool UnifiedVertexMotion::LongUnmatched() const {
+    return std::all_of(frames_unmatched_.of.begin(), frames_unmatched_.of.end(),
+                       [](int frames) { return frames >= kCoastFrames; });
 }
 
 void UnifiedVertexMotion::Guide(Record& record) {
@@ -473,11 +346,11 @@ void UnifiedVertexMotion::PlaceTrailer(const Record& record) {
 void UnifiedVertexMotion::Compose(const Record& record) {
     Composition& c = composition_;
     c.kappa = options_.kappa;
-    c.M_canvas_view[Unit::kTractor] = M_canvas_tractor_ * stabilizer_[Unit::kTractor][0];
+    c.M_canvas_view[Unit::kTractor] = layout_.M_canvas_tractor * stabilizer_[Unit::kTractor][0];
     if (has_trailer()) {
-        const Matrix3d loose = canvas_.IsRing() ? M_canvas_tractor_ : M_loose_[Unit::kTrailer];
         c.M_canvas_view[Unit::kTrailer] =
-            (record.placed ? Matrix3d(M_canvas_tractor_ * hitch_pose_[0]) : loose) *
+            (record.placed ? Matrix3d(layout_.M_canvas_tractor * hitch_pose_[0])
+                           : layout_.M_canvas_trailer) *
             stabilizer_[Unit::kTrailer][0];
     }
     c.view_offset = view_offset_;

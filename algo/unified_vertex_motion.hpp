@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 
+#include "algo/canvas_layout.hpp"
+#include "algo/composition.hpp"
 #include "algo/path_smoother.hpp"
 #include "algo/stitching_motion_field.hpp"
 #include "algo/task_runner.hpp"
@@ -11,39 +13,6 @@
 #include "algo/unit_analysis.hpp"
 
 namespace hitchview::algo {
-
-enum class Border { kFree, kCovered };
-
-struct UnifiedVertexMotionOptions {
-    bool stabilize = true;
-    bool stitch = true;
-    int lookahead_frames = 0;       ///< 0..kMaxLookahead
-    Border border = Border::kFree;  ///< kFree: uncovered pixels are no data; kCovered: zoomed in
-    double cropping = 0.90;         ///< kCovered: share of the view's width that stays visible
-    double kappa = 0.5;             ///< who moves in an overlap: 0 the trailer, 1 the tractor
-    /// Plane: top-left pixel of each unit on the canvas, instead of matching.
-    PerUnit<std::optional<Eigen::Vector2d>> placement;
-};
-
-/// Where everything goes on the canvas at one moment: what the renderer needs.
-struct Composition {
-    PerUnit<Eigen::Matrix3d> M_canvas_view{
-        {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()}};
-    PerUnit<VertexField> view_offset{{VertexField::Zero(), VertexField::Zero()}};
-    VertexField discrepancy = VertexField::Zero();  ///< see StitchingMotionField
-    double kappa = 0.5;
-
-    PerOverlap<SeamState> seams{{SeamState::kNoOverlap, SeamState::kNoOverlap}};
-    PerOverlap<int> matches;
-    PerUnit<int> features;
-    PerUnit<PoseOffset> stabilization;  ///< S of each unit, for reports
-};
-
-/// Where the composition shows a ray of `unit`'s view, canvas px. Inverts what the composed map
-/// does, to 0.01 px for fields that do not fold.
-Eigen::Vector2d ToCanvas(const Projection& canvas, const Projection& view,
-                         const Composition& composition, Unit unit,
-                         const Eigen::Vector3d& view_ray);
 
 /// Unified vertex motion in its live form (facts 4.6): causal, fixed memory, one step per frame
 /// set. A rig has a tractor and perhaps a trailer.
@@ -76,6 +45,7 @@ class UnifiedVertexMotion {
     void Analyse(const RigFrames& frames, TaskRunner& runner, Record& record);
     void MatchUnits(Record& record);
     bool AcquireTrailer(Record& record);
+    [[nodiscard]] bool LongUnmatched() const;
     void Guide(Record& record);
     void UpdateSeams(Record& record);
 
@@ -108,8 +78,7 @@ class UnifiedVertexMotion {
     PerUnit<std::unique_ptr<PathSmoother>> smoother_;
     std::unique_ptr<PathSmoother> hitch_smoother_;
 
-    Eigen::Matrix3d M_canvas_tractor_ = Eigen::Matrix3d::Identity();
-    PerUnit<Eigen::Matrix3d> M_loose_;  // plane, before anything was matched: canvas from view
+    CanvasLayout layout_;
     PerUnit<std::array<Eigen::Matrix3d, 2>>
         stabilizer_;                             // of the frames emitted last, newest first
     std::array<Eigen::Matrix3d, 2> hitch_pose_;  // likewise: smoothed trailer placement

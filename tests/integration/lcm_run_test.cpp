@@ -157,7 +157,6 @@ class LcmRunTest : public testing::Test {
 
     void ExpectEveryPanoramaArrived() {
         const int dropped = report_.at("dropped");
-        EXPECT_LE(dropped, kMostDropped);
         EXPECT_EQ(counts_.received, kFrames - dropped);
         EXPECT_EQ(counts_.missing, dropped);
         EXPECT_EQ(counts_.undecodable, 0);
@@ -182,6 +181,7 @@ std::unique_ptr<TemporaryFolder> LcmRunTest::folder_;
 
 TEST_F(LcmRunTest, EveryPanoramaAndTheHitchAngleArriveAtOtherPrograms) {
     Run(std::string("can:\n  source: {simulated: true}\n") + tests::kSimulatedHitchAngle);
+    EXPECT_LE(report_.at("dropped").get<int>(), kMostDropped);
     ExpectEveryPanoramaArrived();
 
     const auto& statuses = log_["PANORAMA_STATUS"];

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "algo/mesh.hpp"
+#include "algo/projection.hpp"
+#include "algo/trailer_placement.hpp"
+#include "algo/unit.hpp"
+
+namespace hitchview::algo {
+
+/// Where everything goes on the canvas at one moment: what the renderer needs.
+struct Composition {
+    PerUnit<Eigen::Matrix3d> M_canvas_view{
+        {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()}};
+    PerUnit<VertexField> view_offset{{VertexField::Zero(), VertexField::Zero()}};
+    VertexField discrepancy = VertexField::Zero();  ///< see StitchingMotionField
+    double kappa = 0.5;
+
+    PerOverlap<SeamState> seams{{SeamState::kNoOverlap, SeamState::kNoOverlap}};
+    PerOverlap<int> matches;
+    PerUnit<int> features;
+    PerUnit<PoseOffset> stabilization;  ///< S of each unit, for reports
+};
+
+/// Where the composition shows a ray of `unit`'s view, canvas px. Inverts what the composed map
+/// does, to 0.01 px for fields that do not fold.
+Eigen::Vector2d ToCanvas(const Projection& canvas, const Projection& view,
+                         const Composition& composition, Unit unit,
+                         const Eigen::Vector3d& view_ray);
+
+}  // namespace hitchview::algo

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "algo/path_smoother.hpp"
+#include "algo/stitching_motion_field.hpp"
+#include "algo/trailer_placement.hpp"
+#include "algo/unit_analysis.hpp"
+
+namespace hitchview::algo {
+
+enum class Border { kFree, kCovered };
+
+struct UnifiedVertexMotionOptions {
+    bool stabilize = true;
+    bool stitch = true;
+    int lookahead_frames = 0;       ///< 0..kMaxLookahead
+    Border border = Border::kFree;  ///< kFree: uncovered pixels are no data; kCovered: zoomed in
+    double cropping = 0.90;         ///< kCovered: share of the view's width that stays visible
+    double kappa = 0.5;             ///< who moves in an overlap: 0 the trailer, 1 the tractor
+    /// Plane: top-left pixel of each unit on the canvas, instead of matching.
+    PerUnit<std::optional<Eigen::Vector2d>> placement;
+};
+
+/// Pairs farther from the rigid placement than this are another thing, not parallax; canvas px.
+inline constexpr double kMaxParallax_px = 24;
+
+/// The stages' options for pictures of this kind and size: one place for what was tuned.
+UnitAnalysisOptions AnalysisOptions(const Projection& view);
+StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double kappa);
+TrailerPlacementOptions PlacementOptions(const Projection& canvas, double analysis_scale);
+/// Of one unit's own path.
+PathSmootherOptions StabilizerOptions(const Projection& view,
+                                      const UnifiedVertexMotionOptions& options);
+/// Of the trailer's placement on the canvas.
+PathSmootherOptions HitchSmootherOptions(const Projection& view);
+
+}  // namespace hitchview::algo
