@@ -22,7 +22,6 @@ StitchingMotionField::StitchingMotionField(const Projection& canvas,
 void StitchingMotionField::Reset() {
     field_.setZero();
     support_.setZero();
-    supported_ = 0;
 }
 
 Vector2d StitchingMotionField::Discrepancy(const CanvasPair& pair) const {
@@ -91,7 +90,6 @@ void StitchingMotionField::Blend(const CanvasPairs&) {
             support_(i) = std::max(support_(i), support);
         }
     }
-    supported_ = static_cast<int>((support_.array() > 0).count());
 }
 
 void StitchingMotionField::Extend() {

@@ -52,8 +52,6 @@ class StitchingMotionField {
     [[nodiscard]] Eigen::Vector2d TrailerDisplacement(const Eigen::Vector2d& canvas_px) const {
         return (1 - options_.kappa) * Sample(mesh_, field_, canvas_px);
     }
-    /// Share of the vertices that the last Update's pairs support.
-    [[nodiscard]] int supported_vertices() const { return supported_; }
 
  private:
     [[nodiscard]] Eigen::Vector2d MeetingPoint(const CanvasPair& pair) const;
@@ -78,7 +76,6 @@ class StitchingMotionField {
     VertexScalars votes_ = VertexScalars::Zero();
     VertexScalars support_ = VertexScalars::Zero();  // 0..1, of this frame
     VertexField field_ = VertexField::Zero();
-    int supported_ = 0;
 };
 
 }  // namespace hitchview::algo

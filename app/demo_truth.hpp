@@ -37,7 +37,7 @@ class TruthMeter {
     [[nodiscard]] Seam SeamOf(double from_m, double to_m) const;
 
  private:
-    static constexpr int kLandmarks = 48;
+    static constexpr int kLandmarks = 24;
 
     /// Where one unit shows a landmark.
     struct Sighting {
