@@ -1,40 +1,26 @@
 #pragma once
 
-#include <unistd.h>
-
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace hitchview::test_support {
 
-/// A folder of its own that is gone when the test is over.
+/// A TemporaryFolder that can be filled with text files.
 class TempFolder {
  public:
-    TempFolder() {
-        static std::atomic<int> count{0};
-        path_ = std::filesystem::temp_directory_path() /
-                ("hitchview-" + std::to_string(getpid()) + "-" + std::to_string(count++));
-        std::filesystem::create_directories(path_);
-    }
-    TempFolder(const TempFolder&) = delete;
-    TempFolder& operator=(const TempFolder&) = delete;
-    ~TempFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    [[nodiscard]] std::filesystem::path path() const { return folder_.path(); }
 
     std::filesystem::path Write(const std::string& name, const std::string& text) const {
-        std::ofstream(path_ / name, std::ios::binary) << text;
-        return path_ / name;
+        std::ofstream(path() / name, std::ios::binary) << text;
+        return path() / name;
     }
 
  private:
-    std::filesystem::path path_;
+    tests::TemporaryFolder folder_;
 };
 
 inline std::string FileText(const std::filesystem::path& file) {
