@@ -25,7 +25,7 @@ struct ArticulationOptions {
     double measured_sigma_rad = 0.03;    ///< a less certain fit is no measurement
     double reported_sigma_rad = 0.03;    ///< what is less certain is not reported
     double lost_sigma_rad = 0.1;         ///< what is less certain is searched from nothing
-    double systematic_rad = 2e-3;        ///< of a measurement, beside what its pairs scatter
+    double systematic_rad = 2e-3;        ///< of a measurement: what the calibration may be off
     double prediction_rad = 5e-3;        ///< deviation of the predicted turn between two frames
     double blind_prediction_rad = 0.02;  ///< same, where the intra motion of a unit is not known
     double gate = 4;       ///< measurements farther off, in deviations, are taken for wrong

@@ -56,16 +56,6 @@ class HingeEstimator {
     [[nodiscard]] std::optional<HingeFit> Search(std::span<const SightPair> pairs) const;
 
  private:
-    struct Pose;
-    struct Normal;
-
-    [[nodiscard]] double Cost(std::span<const SightPair> pairs, const Pose& pose, double noise_rad,
-                              std::size_t stride) const;
-    [[nodiscard]] Normal Linearise(std::span<const SightPair> pairs, const Pose& pose,
-                                   double noise_rad) const;
-    [[nodiscard]] std::optional<HingeFit> Solve(std::span<const SightPair> pairs, double yaw_rad,
-                                                double noise_rad) const;
-
     HingeFitOptions options_;
     MagsacCost robust_{1};
 };
