@@ -68,6 +68,7 @@ TruthMeter::Sighting TruthMeter::Sight(Unit unit, int frame, const Vector3d& p_w
 void TruthMeter::Observe(const ShownPanorama& shown, const Pipeline& pipeline) {
     const int frame = static_cast<int>(shown.picture.header.sequence);
     for (const Unit unit : algo::kUnits) ObserveShake(unit, frame, *shown.composition);
+    ObserveArticulation(frame, *shown.composition);
     if (frame % kSeamEvery != 0) return;
     for (const algo::Overlap overlap : algo::kOverlaps)
         ObserveSeam(overlap, frame, shown, pipeline);
@@ -92,6 +93,22 @@ void TruthMeter::ObserveShake(Unit unit, int frame, const algo::Composition& com
                                      .squaredNorm();
         ++shake_samples_[unit];
     }
+}
+
+void TruthMeter::ObserveArticulation(int frame, const algo::Composition& composition) {
+    if (!composition.articulation) return;
+    const Eigen::Matrix3d R_tractor_trailer =
+        rig_.PoseAt(frame, Unit::kTractor).linear().transpose() *
+        rig_.PoseAt(frame, Unit::kTrailer).linear();
+    const double truth_rad = std::atan2(R_tractor_trailer(1, 0), R_tractor_trailer(0, 0));
+    const double error_rad = std::abs(composition.articulation->angle_rad - truth_rad);
+    articulation_squares_ += error_rad * error_rad;
+    articulation_.largest_rad = std::max(articulation_.largest_rad, error_rad);
+    articulation_.rms_rad = std::sqrt(articulation_squares_ / ++articulation_.samples);
+}
+
+TruthMeter::ArticulationError TruthMeter::ErrorOfArticulation() const {
+    return articulation_;
 }
 
 void TruthMeter::ObserveSeam(algo::Overlap overlap, int frame, const ShownPanorama& shown,
