@@ -124,7 +124,7 @@ TEST(SimulatedSceneTest, ATruckHidesWhatIsBehindItOnlyWhileItIsThere) {
 }
 
 // The renderer culls by tile and the truth casts one ray: both must see the truck in its place.
-TEST(SimulatedSceneTest, TheImageChangesWhereTheTruckIsAndNowhereElse) {
+TEST(SimulatedSceneTest, TheImageChangesWhereTheTruckIs) {
     const auto with = Rig(SmallScenario("overtaking_truck"));
     const auto without = Rig(SmallScenario("straight"));
     const Image a = Rendered(*with, kLeft, 75);
