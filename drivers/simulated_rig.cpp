@@ -96,8 +96,35 @@ SimulatedRig::SimulatedRig(const SimulationOptions& options)
     : options_(options),
       cameras_(SimulatedRigGeometry(options.width_px, options.height_px)),
       motion_(options),
-      world_(options),
-      renderer_(world_, cameras_[0].geometry.model) {}
+      world_(options, motion_.PathOffRoad()),
+      renderer_(world_, cameras_[0].geometry.model),
+      snowfall_(options.scene.snowflakes, Hash(options.seed, 500)) {
+    if (!options.sensor.auto_exposure) return;
+    auto_exposure_.emplace(options, kCameras, [this](int camera_index, int frame) {
+        return LightAround(camera_index, frame);
+    });
+}
+
+Moment SimulatedRig::MomentOf(int frame) const {
+    Moment moment;
+    moment.time_s = std::chrono::duration<double>(FrameTime(options_, frame)).count();
+    for (const algo::Unit unit : algo::kUnits)
+        moment.T_unit_world[unit] = PoseAt(frame, unit).inverse().cast<float>();
+    return moment;
+}
+
+/// Mean from the camera to three metres before it.
+double SimulatedRig::LightAround(int camera_index, int frame) const {
+    constexpr int kPlaces = 4;
+    const Isometry3d T_world_camera = CameraPoseAt(camera_index, frame);
+    const Moment moment = MomentOf(frame);
+    double sum = 0;
+    for (int i = 0; i < kPlaces; ++i) {
+        const Vector3d place = T_world_camera * Vector3d{0, 0, 1.0 * i};
+        sum += world_.lighting().LevelAt(place, moment);
+    }
+    return sum / kPlaces;
+}
 
 const SimulatedCameraGeometry& SimulatedRig::camera(int camera_index) const {
     HV_EXPECT(camera_index >= 0 && camera_index < kCameras);
@@ -113,15 +140,47 @@ double SimulatedRig::GainOf(int camera_index) const {
     return 1 + options_.gain_spread * (2 * Unit01(Hash(options_.seed, 300, camera)) - 1);
 }
 
+double SimulatedRig::GainAt(int camera_index, int frame) const {
+    double factor = 1;
+    for (const SensorOptions::GainStep& step : options_.sensor.gain_steps) {
+        if (step.camera == camera_index && step.first_frame <= frame) factor = step.factor;
+    }
+    if (auto_exposure_) factor *= auto_exposure_->GainAt(camera_index, frame);
+    return GainOf(camera_index) * factor * options_.sensor.gain;
+}
+
+bool SimulatedRig::CameraPresent(int camera_index, int frame) const {
+    const auto& outages = options_.sensor.outages;
+    return std::none_of(outages.begin(), outages.end(), [&](const SensorOptions::Outage& outage) {
+        return outage.camera == camera_index && frame >= outage.first_frame &&
+               frame < outage.end_frame;
+    });
+}
+
 void SimulatedRig::Render(int camera_index, int frame, Renderer::Workspace& workspace,
                           std::span<std::uint8_t> out_nv12) const {
     const std::uint32_t noise_seed =
         Hash(Hash(options_.seed, 400), static_cast<std::uint32_t>(camera_index),
              static_cast<std::uint32_t>(frame));
-    renderer_.Render(CameraPoseAt(camera_index, frame),
-                     {static_cast<float>(GainOf(camera_index)),
+    renderer_.Render(CameraPoseAt(camera_index, frame), MomentOf(frame),
+                     {static_cast<float>(GainAt(camera_index, frame)),
                       static_cast<float>(options_.noise_sigma), noise_seed},
                      options_.render_threads, workspace, out_nv12);
+    if (options_.scene.snowflakes > 0) DrawSnow(camera_index, frame, out_nv12);
+}
+
+void SimulatedRig::DrawSnow(int camera_index, int frame, std::span<std::uint8_t> nv12) const {
+    constexpr std::chrono::milliseconds kShutter{6};
+    const hal::Instant opens = FrameTime(options_, frame);
+    const SimulatedCameraGeometry& at = camera(camera_index);
+    const auto pose = [&](hal::Instant since_start) {
+        return motion_.PoseAt(since_start, at.unit, Shaking::kWith) * at.geometry.T_unit_camera;
+    };
+    snowfall_.DrawOver(
+        {at.geometry.model, pose(opens), pose(opens + kShutter),
+         std::chrono::duration<double>(opens).count(),
+         std::chrono::duration<double>(kShutter).count(), GainAt(camera_index, frame)},
+        nv12);
 }
 
 Isometry3d SimulatedRig::PoseAt(int frame, algo::Unit unit, Shaking shaking) const {
@@ -142,14 +201,20 @@ double SimulatedRig::HitchAngleAt(hal::Instant since_start) const {
     return motion_.HitchAngleAt(since_start);
 }
 
+double SimulatedRig::ArticulationAt(int frame) const {
+    const Vector3d forward_of_trailer = PoseAt(frame, algo::Unit::kTractor).linear().transpose() *
+                                        PoseAt(frame, algo::Unit::kTrailer).linear().col(0);
+    return std::atan2(forward_of_trailer.y(), forward_of_trailer.x());
+}
+
 std::optional<SimulatedRig::SeenPoint> SimulatedRig::WorldPointAt(int camera_index, int frame,
                                                                   const Vector2d& pixel) const {
     const auto ray_camera = camera(camera_index).geometry.model.Unproject(pixel);
     if (!ray_camera) return std::nullopt;
     const Isometry3d T_world_camera = CameraPoseAt(camera_index, frame);
     const Vector3d ray_world = T_world_camera.linear() * *ray_camera;
-    const double distance_m =
-        std::min(world_.DistanceTo(T_world_camera.translation(), ray_world), kFar_m);
+    const double distance_m = std::min(
+        world_.DistanceTo(T_world_camera.translation(), MomentOf(frame), ray_world), kFar_m);
     return SeenPoint{T_world_camera.translation() + distance_m * ray_world, distance_m};
 }
 
@@ -162,7 +227,8 @@ std::optional<Vector2d> SimulatedRig::ProjectWorldPoint(int camera_index, int fr
     if (!pixel || !InImage(lens, *pixel)) return std::nullopt;
     if (occlusion == Occlusion::kIgnored) return pixel;
     const Vector3d to_point = p_world_m - T_world_camera.translation();
-    const double first_m = world_.DistanceTo(T_world_camera.translation(), to_point.normalized());
+    const double first_m =
+        world_.DistanceTo(T_world_camera.translation(), MomentOf(frame), to_point.normalized());
     if (first_m < to_point.norm() * (1 - kSurfaceTolerance)) return std::nullopt;
     return pixel;
 }
