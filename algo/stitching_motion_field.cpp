@@ -32,6 +32,16 @@ Vector2d StitchingMotionField::MeetingPoint(const CanvasPair& pair) const {
     return pair.tractor_px + options_.kappa * Discrepancy(pair);
 }
 
+void StitchingMotionField::Carry(const Eigen::Matrix3d& M_early_late) {
+    const VertexField early = field_;
+    for (int row = 0; row < Mesh::kVertexRows; ++row) {
+        for (int col = 0; col < Mesh::kVertexCols; ++col) {
+            const Vector2d at = canvas_.Pixel(M_early_late * canvas_.Ray(mesh_.Vertex(row, col)));
+            field_.col(Mesh::Index(row, col)) = Sample(mesh_, early, at).cast<float>();
+        }
+    }
+}
+
 void StitchingMotionField::Update(const CanvasPairs& pairs) {
     if (pairs.count() < options_.propagation.min_votes) return;
     FitDominantPlane(pairs);

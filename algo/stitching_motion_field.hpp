@@ -37,6 +37,9 @@ class StitchingMotionField {
  public:
     StitchingMotionField(const Projection& canvas, const StitchingMotionFieldOptions& options);
 
+    /// Lets the field move with what it is a property of: `M_early_late` takes rays of the canvas
+    /// to where the same things lay one frame ago. Call before Update.
+    void Carry(const Eigen::Matrix3d& M_early_late);
     /// Takes the newest pairs of one overlap. Call once per overlap, then Extend.
     void Update(const CanvasPairs& pairs);
     /// Continues the field outside the supported vertices and guards against folds.

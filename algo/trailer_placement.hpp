@@ -16,7 +16,7 @@ enum class SeamState { kNoOverlap, kReacquire, kCoast, kLocked };
 struct TrailerPlacementOptions {
     MagsacOptions robust{.max_sigma_px = 2.0, .max_iterations = 200};
     MagsacOptions acquire{.max_sigma_px = 4.0, .max_iterations = 500};
-    double gain = 0.7;             ///< share of the newest measurement; more right after acquiring
+    double gain = 0.7;  ///< share of the newest measurement; more right after acquiring
     int min_inliers = 12;
     int acquire_inliers = 16;
     int coast_frames = 60;  ///< without matches before the overlap is searched from nothing

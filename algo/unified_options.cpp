@@ -15,14 +15,18 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 /// Nothing is uncovered by a ring's heading or by a free border: the bound is how far the picture
 /// may lag a bend or leave its place. What pulls back grows long before it.
-void BoundFreely(const Projection& view, PathSmootherOptions& smoother) {
+void BoundFreely(const Projection& canvas, const Projection& view, PathSmootherOptions& smoother) {
     if (view.IsRing()) {  // steering is slow and a vehicle's shake fast: no need to hold back long
         smoother.wall = {8 * kDegree * view.focal_px, 3 * kDegree, 3 * kDegree};
         smoother.weakest_pull = 1e-3;
         smoother.strongest_pull = 0.1;
         return;
     }
-    smoother.wall = {0.376 * view.width_px, 0.376 * view.height_px, 0.18};
+    const auto room = [](int canvas_px, int view_px) {  // that the canvas leaves beside the view
+        return 0.376 * view_px + 0.5 * std::max(0, canvas_px - view_px);
+    };
+    smoother.wall = {room(canvas.width_px, view.width_px), room(canvas.height_px, view.height_px),
+                     0.18};
 }
 
 /// The margin that the zoom leaves is a hard bound, shared by shift and turn; plans keep clear of
@@ -66,14 +70,14 @@ StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double ka
     return options;
 }
 
-PathSmootherOptions StabilizerOptions(const Projection& view,
+PathSmootherOptions StabilizerOptions(const Projection& canvas, const Projection& view,
                                       const UnifiedVertexMotionOptions& options) {
     PathSmootherOptions smoother;
     smoother.lookahead_frames = options.lookahead_frames;
     if (options.border == Border::kCovered && !view.IsRing()) {
         BoundByMargin(view, options.cropping, smoother);
     } else {
-        BoundFreely(view, smoother);
+        BoundFreely(canvas, view, smoother);
     }
     return smoother;
 }

@@ -31,7 +31,7 @@ UnitAnalysisOptions AnalysisOptions(const Projection& view);
 StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double kappa);
 TrailerPlacementOptions PlacementOptions(const Projection& canvas, double analysis_scale);
 /// Of one unit's own path.
-PathSmootherOptions StabilizerOptions(const Projection& view,
+PathSmootherOptions StabilizerOptions(const Projection& canvas, const Projection& view,
                                       const UnifiedVertexMotionOptions& options);
 /// Of the trailer's placement on the canvas.
 PathSmootherOptions HitchSmootherOptions(const Projection& view);

@@ -102,7 +102,8 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
         if (!geometry[unit]) continue;
         analysis_[unit] =
             std::make_unique<UnitAnalysis>(*geometry[unit], AnalysisOptions(view(unit)));
-        smoother_[unit] = std::make_unique<PathSmoother>(StabilizerOptions(view(unit), options));
+        smoother_[unit] =
+            std::make_unique<PathSmoother>(StabilizerOptions(canvas, view(unit), options));
     }
     if (has_trailer()) {
         const SemiSurroundView& a = analysis_[Unit::kTractor]->view();
@@ -274,8 +275,9 @@ const Composition* UnifiedVertexMotion::Emit(std::int64_t index) {
         UpdateViewOffset(record, unit);
     }
     if (has_trailer()) PlaceTrailer(record);
+    const Matrix3d M_canvas_early = composition_.M_canvas_view[Unit::kTractor];
     Compose(record);
-    if (has_trailer() && record.placed) UpdateStitching(record);
+    if (has_trailer() && record.placed) UpdateStitching(record, M_canvas_early);
     composition_.discrepancy = stitching_.discrepancy();
     return &composition_;
 }
@@ -373,7 +375,10 @@ Vector2d UnifiedVertexMotion::OnCanvas(Unit unit, const Vector2d& view_px) const
     return canvas_.Pixel(composition_.M_canvas_view[unit] * view(unit).Ray(moved));
 }
 
-void UnifiedVertexMotion::UpdateStitching(const Record& record) {
+void UnifiedVertexMotion::UpdateStitching(const Record& record, const Matrix3d& M_canvas_early) {
+    const Matrix3d M_canvas_late = composition_.M_canvas_view[Unit::kTractor];
+    stitching_.Carry(M_canvas_early * record.intra[Unit::kTractor].M_late_early.inverse() *
+                     M_canvas_late.inverse());
     for (const Overlap overlap : kOverlaps) {
         canvas_pairs_.clear();
         for (const InterFeature& f : record.inter[overlap]) {

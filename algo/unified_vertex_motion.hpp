@@ -54,7 +54,7 @@ class UnifiedVertexMotion {
     void Stabilise(std::int64_t index, Unit unit);
     void PlaceTrailer(const Record& record);
     void UpdateViewOffset(const Record& record, Unit unit);
-    void UpdateStitching(const Record& record);
+    void UpdateStitching(const Record& record, const Eigen::Matrix3d& M_canvas_early);
     void Compose(const Record& record);
     [[nodiscard]] PathSmoother::Window Window(std::int64_t index, Unit unit) const;
     [[nodiscard]] Eigen::Vector2d OnCanvas(Unit unit, const Eigen::Vector2d& view_px) const;
