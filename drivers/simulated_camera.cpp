@@ -26,6 +26,10 @@ SimulatedCamera::SimulatedCamera(const SimulatedRig& rig, int camera_index, hal:
 
 hal::Result<hal::FrameLease> SimulatedCamera::DoWaitFrame(std::chrono::milliseconds timeout) {
     if (next_frame_ >= rig_.options().frames) return hal::Error::kEndOfStream;
+    if (!rig_.CameraPresent(camera_index_, next_frame_)) {
+        ++next_frame_;
+        return hal::Error::kCorrupted;
+    }
     const auto maybe_slot = WaitSlot(pool_, timeout);
     if (!maybe_slot) return hal::Error::kTimeout;
     const int frame = next_frame_++;

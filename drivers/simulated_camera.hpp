@@ -7,7 +7,7 @@ namespace hitchview::drivers {
 
 /// One camera of the simulated rig. WaitFrame renders the next frame on the calling thread, as fast
 /// as it can and without skipping any; it does not pace. kTimeout: every frame of the pool is lent
-/// out. kEndOfStream after the last frame of the drive.
+/// out. kCorrupted: one frame of an outage. kEndOfStream after the last frame of the drive.
 class SimulatedCamera final : public hal::Camera {
  public:
     /// `rig` must outlive the camera. Frame i is captured at `start` + i periods.

@@ -116,14 +116,24 @@ Motion::Motion(const SimulationOptions& options)
     const auto steps = static_cast<std::size_t>(end / kGrid) + 1;
     states_.reserve(steps);
     State state;
+    if (!options.hitch_angle.empty()) state.hitch_rad = ValueAt(options.hitch_angle, 0);
     for (std::size_t i = 0; i < steps; ++i) {
         states_.push_back(state);
-        state = Step(state, Seconds(kGrid));
+        state = Step(state, Seconds(kGrid) * static_cast<double>(i), Seconds(kGrid));
     }
 }
 
-Motion::State Motion::Slope(const State& s) const {
-    const double speed = options_.speed_mps;
+double Motion::SpeedAt(double time_s) const {
+    return options_.speed.empty() ? options_.speed_mps : ValueAt(options_.speed, time_s);
+}
+
+double Motion::TractorYaw(const State& state) const {
+    return options_.hitch_angle.empty() ? HeadingAt(options_, state.travelled_m) : state.yaw_rad;
+}
+
+Motion::State Motion::Slope(const State& s, double time_s) const {
+    if (!options_.hitch_angle.empty()) return ScriptedSlope(s, time_s);
+    const double speed = SpeedAt(time_s);
     const double k = CurvatureAt(options_, s.travelled_m);
     const double heading = HeadingAt(options_, s.travelled_m);
     const double pulled =
@@ -132,34 +142,47 @@ Motion::State Motion::Slope(const State& s) const {
             -speed / VehicleDimensions::kTrailerAxle * pulled - speed * k};
 }
 
+Motion::State Motion::ScriptedSlope(const State& s, double time_s) const {
+    constexpr double kA = VehicleDimensions::kTractorAxle;
+    constexpr double kB = VehicleDimensions::kTrailerAxle;
+    const double speed = SpeedAt(time_s);
+    const double angle = ValueAt(options_.hitch_angle, time_s);
+    const double angle_rate = RateAt(options_.hitch_angle, time_s);
+    const double yaw_rate =
+        -(kB * angle_rate + speed * std::sin(angle)) / (kA * std::cos(angle) + kB);
+    return {speed * std::cos(s.yaw_rad), speed * std::sin(s.yaw_rad), speed, angle_rate, yaw_rate};
+}
+
 // Runge-Kutta, fourth order.
-Motion::State Motion::Step(const State& state, double duration_s) const {
+Motion::State Motion::Step(const State& state, double time_s, double duration_s) const {
     const auto after = [&state](const State& slope, double seconds) {
         return State{state.x_m + slope.x_m * seconds, state.y_m + slope.y_m * seconds,
                      state.travelled_m + slope.travelled_m * seconds,
-                     state.hitch_rad + slope.hitch_rad * seconds};
+                     state.hitch_rad + slope.hitch_rad * seconds,
+                     state.yaw_rad + slope.yaw_rad * seconds};
     };
-    const State k1 = Slope(state);
-    const State k2 = Slope(after(k1, duration_s / 2));
-    const State k3 = Slope(after(k2, duration_s / 2));
-    const State k4 = Slope(after(k3, duration_s));
+    const double half_s = duration_s / 2;
+    const State k1 = Slope(state, time_s);
+    const State k2 = Slope(after(k1, half_s), time_s + half_s);
+    const State k3 = Slope(after(k2, half_s), time_s + half_s);
+    const State k4 = Slope(after(k3, duration_s), time_s + duration_s);
     const auto mean = [&](double State::*part) {
         return (k1.*part + 2 * k2.*part + 2 * k3.*part + k4.*part) / 6;
     };
-    return after(
-        {mean(&State::x_m), mean(&State::y_m), mean(&State::travelled_m), mean(&State::hitch_rad)},
-        duration_s);
+    return after({mean(&State::x_m), mean(&State::y_m), mean(&State::travelled_m),
+                  mean(&State::hitch_rad), mean(&State::yaw_rad)},
+                 duration_s);
 }
 
 Motion::State Motion::StateAt(hal::Instant since_start) const {
     const auto i = static_cast<std::size_t>(since_start / kGrid);
     HV_EXPECT(since_start.count() >= 0 && i < states_.size());
-    return Step(states_[i], Seconds(since_start % kGrid));
+    return Step(states_[i], Seconds(kGrid) * static_cast<double>(i), Seconds(since_start % kGrid));
 }
 
 Isometry3d Motion::PoseAt(hal::Instant since_start, algo::Unit unit, Shaking shaking) const {
     const State state = StateAt(since_start);
-    const double tractor_yaw = HeadingAt(options_, state.travelled_m);
+    const double tractor_yaw = TractorYaw(state);
     const bool tractor = unit == algo::Unit::kTractor;
     const Isometry3d T_world_unit =
         Planar(state.x_m - VehicleDimensions::kTractorAxle * std::cos(tractor_yaw),

@@ -51,7 +51,10 @@ class Shake {
 /// Where both units are at any moment of the drive. The tractor's rear axle follows the road; the
 /// trailer is pulled without side slip (v speed, k curvature, a, b as in SteadyHitchAngle):
 ///     d(angle)/dt = -v / b (sin(angle) + a k cos(angle)) - v k
-/// Thread-safe.
+/// With a scripted hitch angle the tractor leaves the road and steers just so that the trailer,
+/// still without side slip, takes that angle; the same equation, solved for the yaw rate v k:
+///     d(yaw)/dt = -(b d(angle)/dt + v sin(angle)) / (a cos(angle) + b)
+/// It is stable backwards too. Thread-safe.
 class Motion {
  public:
     explicit Motion(const SimulationOptions& options);
@@ -66,9 +69,13 @@ class Motion {
  private:
     struct State {
         double x_m = 0, y_m = 0, travelled_m = 0, hitch_rad = 0;
+        double yaw_rad = 0;  // of the tractor, where the hitch angle is scripted
     };
-    [[nodiscard]] State Slope(const State& state) const;
-    [[nodiscard]] State Step(const State& state, double duration_s) const;
+    [[nodiscard]] double SpeedAt(double time_s) const;
+    [[nodiscard]] double TractorYaw(const State& state) const;
+    [[nodiscard]] State Slope(const State& state, double time_s) const;
+    [[nodiscard]] State ScriptedSlope(const State& state, double time_s) const;
+    [[nodiscard]] State Step(const State& state, double time_s, double duration_s) const;
     [[nodiscard]] State StateAt(hal::Instant since_start) const;
 
     SimulationOptions options_;

@@ -41,6 +41,48 @@ double SlalomHeading_rad(const SimulationOptions& o) {
     return o.curvature_per_m * o.speed_mps * o.slalom_period_s / (2 * std::numbers::pi);
 }
 
+void AddScript(std::vector<Bound>& bounds, const char* key, const Script& script, double highest) {
+    double last_s = 0;
+    for (const Key& at : script) {
+        bounds.push_back({"time_s of a key, ascending,", at.time_s, last_s, 1e5});
+        bounds.push_back({key, at.value, -highest, highest});
+        last_s = at.time_s + 1e-3;
+    }
+}
+
+void AddScene(std::vector<Bound>& bounds, const SimulationOptions& o) {
+    const SceneOptions& scene = o.scene;
+    bounds.push_back({"scene.density", scene.density, 0, 1});
+    bounds.push_back({"scene.visibility_m", scene.visibility_m, 20, 1e5});
+    bounds.push_back({"scene.overcast", scene.overcast, 0, 1});
+    bounds.push_back({"scene.snowflakes", static_cast<double>(scene.snowflakes), 0, 20000});
+    bounds.push_back({"scene.trucks", static_cast<double>(scene.trucks.size()), 0, 8});
+    for (const SceneOptions::Truck& truck : scene.trucks) {
+        bounds.push_back({"scene.trucks.start_m", truck.start_m, -1e4, 1e4});
+        bounds.push_back({"scene.trucks.across_m", truck.across_m, -20, 20});
+        bounds.push_back({"scene.trucks.speed_mps", truck.speed_mps, -50, 50});
+    }
+    if (!scene.tunnel) return;
+    const double from_m = scene.tunnel->from_m;
+    bounds.push_back({"scene.tunnel with profile", static_cast<double>(o.profile), 0, 0});
+    bounds.push_back({"scene.tunnel.from_m", from_m, -1e4, 1e4});
+    bounds.push_back({"scene.tunnel.to_m", scene.tunnel->to_m, from_m + 10, from_m + 1e4});
+}
+
+void AddSensor(std::vector<Bound>& bounds, const SensorOptions& sensor) {
+    constexpr double kLastCamera = 7;
+    bounds.push_back({"sensor.gain", sensor.gain, 0.1, 10});
+    for (const SensorOptions::GainStep& step : sensor.gain_steps) {
+        bounds.push_back({"sensor.gain_steps.camera", 1.0 * step.camera, 0, kLastCamera});
+        bounds.push_back({"sensor.gain_steps.first_frame", 1.0 * step.first_frame, 0, 36000});
+        bounds.push_back({"sensor.gain_steps.factor", step.factor, 0.1, 10});
+    }
+    for (const SensorOptions::Outage& outage : sensor.outages) {
+        bounds.push_back({"sensor.outages.camera", 1.0 * outage.camera, 0, kLastCamera});
+        bounds.push_back({"sensor.outages.first_frame", 1.0 * outage.first_frame, 0, 36000});
+    }
+}
+
 std::vector<Bound> Bounds(const SimulationOptions& o) {
     std::vector<Bound> bounds{
         {"frames", static_cast<double>(o.frames), 1, 36000},
@@ -60,6 +102,10 @@ std::vector<Bound> Bounds(const SimulationOptions& o) {
         const std::vector<Bound> more = ShakeBounds(shake);
         bounds.insert(bounds.end(), more.begin(), more.end());
     }
+    AddScript(bounds, "speed", o.speed, 30);
+    AddScript(bounds, "hitch_angle", o.hitch_angle, 1.4);
+    AddScene(bounds, o);
+    AddSensor(bounds, o.sensor);
     return bounds;
 }
 

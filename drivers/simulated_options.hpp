@@ -2,8 +2,11 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "algo/unit.hpp"
+#include "drivers/simulated_script.hpp"
 #include "hal/frame.hpp"
 #include "hal/result.hpp"
 
@@ -27,6 +30,55 @@ struct ShakeOptions {
     double scale = 1;  ///< multiplies every amplitude; 0 holds the unit still
 };
 
+/// What the vehicle drives through.
+struct SceneOptions {
+    enum class Ground {
+        kRoad,   ///< road, shoulders and meadows
+        kSnow,   ///< the same under snow, with tracks
+        kPlain,  ///< one grey, nearly without texture
+    };
+    /// A straight piece of the road under a hill, in metres along the road.
+    struct Tunnel {
+        double from_m = 0, to_m = 0;
+    };
+    /// A truck of 16 m on the road at constant speed.
+    struct Truck {
+        double start_m = 0;   ///< of its middle along the road as the drive starts
+        double across_m = 0;  ///< left of the driven lane
+        double speed_mps = 0;
+    };
+
+    Ground ground = Ground::kRoad;
+    double density = 1;            ///< share of the things along the road that stand there
+    double visibility_m = 900;     ///< distance at which the air hides half
+    double overcast = 0;           ///< share of sky and hills that the air hides
+    bool night = false;            ///< lit by headlights, work lamps and street lamps alone
+    int snowflakes = 0;            ///< within three metres of each camera
+    std::optional<Tunnel> tunnel;  ///< on a straight road only
+    std::vector<Truck> trucks;
+};
+
+/// What the cameras do to the light, beside the spread of their gains.
+struct SensorOptions {
+    /// From one frame on the gain of one camera is this times its usual one.
+    struct GainStep {
+        int camera = 0;
+        int first_frame = 0;
+        double factor = 1;
+    };
+    /// A camera that delivers nothing for a while.
+    struct Outage {
+        int camera = 0;
+        int first_frame = 0;
+        int end_frame = 0;  ///< the first that is there again
+    };
+
+    double gain = 1;             ///< of all cameras
+    bool auto_exposure = false;  ///< follows the light around the camera, half a second behind
+    std::vector<GainStep> gain_steps;  ///< first frames ascending
+    std::vector<Outage> outages;
+};
+
 /// Everything that decides what the simulated cameras and CAN bus deliver. Equal options, equal
 /// bytes.
 struct SimulationOptions {
@@ -39,11 +91,15 @@ struct SimulationOptions {
     DriveProfile profile = DriveProfile::kSlalom;
     double curvature_per_m = 0.08;  ///< peak of the slalom, constant in a turn
     double slalom_period_s = 6;
+    Script speed;        ///< m/s, negative backwards; empty: `speed_mps` throughout
+    Script hitch_angle;  ///< rad, positive left; empty: pulled. See Motion.
     algo::PerUnit<ShakeOptions> shake{
         {ShakeOptions{}, ShakeOptions{.translation_m = 0.016, .lowest_hz = 4, .highest_hz = 12}}};
     double gain_spread = 0.04;  ///< exposure gains of the cameras lie in 1 +- this
     double noise_sigma = 1.0;   ///< grey levels, of each pixel alone
-    int render_threads = 2;     ///< threads that share one image; 1: the caller's alone
+    SceneOptions scene{};
+    SensorOptions sensor{};
+    int render_threads = 2;  ///< threads that share one image; 1: the caller's alone
 };
 
 /// Done, or the first option out of range with its value and the range allowed.

@@ -113,13 +113,29 @@ double SimulatedRig::GainOf(int camera_index) const {
     return 1 + options_.gain_spread * (2 * Unit01(Hash(options_.seed, 300, camera)) - 1);
 }
 
+double SimulatedRig::GainAt(int camera_index, int frame) const {
+    double factor = 1;
+    for (const SensorOptions::GainStep& step : options_.sensor.gain_steps) {
+        if (step.camera == camera_index && step.first_frame <= frame) factor = step.factor;
+    }
+    return GainOf(camera_index) * factor * options_.sensor.gain;
+}
+
+bool SimulatedRig::CameraPresent(int camera_index, int frame) const {
+    const auto& outages = options_.sensor.outages;
+    return std::none_of(outages.begin(), outages.end(), [&](const SensorOptions::Outage& outage) {
+        return outage.camera == camera_index && frame >= outage.first_frame &&
+               frame < outage.end_frame;
+    });
+}
+
 void SimulatedRig::Render(int camera_index, int frame, Renderer::Workspace& workspace,
                           std::span<std::uint8_t> out_nv12) const {
     const std::uint32_t noise_seed =
         Hash(Hash(options_.seed, 400), static_cast<std::uint32_t>(camera_index),
              static_cast<std::uint32_t>(frame));
     renderer_.Render(CameraPoseAt(camera_index, frame),
-                     {static_cast<float>(GainOf(camera_index)),
+                     {static_cast<float>(GainAt(camera_index, frame)),
                       static_cast<float>(options_.noise_sigma), noise_seed},
                      options_.render_threads, workspace, out_nv12);
 }
@@ -140,6 +156,12 @@ double SimulatedRig::HitchAngleAt(int frame) const {
 
 double SimulatedRig::HitchAngleAt(hal::Instant since_start) const {
     return motion_.HitchAngleAt(since_start);
+}
+
+double SimulatedRig::ArticulationAt(int frame) const {
+    const Vector3d forward_of_trailer = PoseAt(frame, algo::Unit::kTractor).linear().transpose() *
+                                        PoseAt(frame, algo::Unit::kTrailer).linear().col(0);
+    return std::atan2(forward_of_trailer.y(), forward_of_trailer.x());
 }
 
 std::optional<SimulatedRig::SeenPoint> SimulatedRig::WorldPointAt(int camera_index, int frame,

@@ -26,7 +26,9 @@ using SimulatedRigGeometryTable = std::array<SimulatedCameraGeometry, 8>;
 /// taller than wide).
 SimulatedRigGeometryTable SimulatedRigGeometry(int width_px, int height_px);
 
-/// A drive with a tractor-trailer: what its eight cameras see and what is true. Thread-safe.
+/// A drive with a tractor-trailer: what its eight cameras see and what is true. The side cameras
+/// next to the hitch, left_front and left (right_front and right), are 1.8 m apart when the vehicle
+/// is straight: each sits 0.9 m from the hitch. Thread-safe.
 class SimulatedRig {
  public:
     static constexpr int kCameras = 8;
@@ -39,8 +41,12 @@ class SimulatedRig {
     [[nodiscard]] const SimulationOptions& options() const { return options_; }
     [[nodiscard]] const SimulatedCameraGeometry& camera(int camera_index) const;
     [[nodiscard]] hal::FrameFormat format() const;
-    /// Gain on the light of this camera, near 1.
+    /// Gain on the light of this camera, near 1, before exposure changes it.
     [[nodiscard]] double GainOf(int camera_index) const;
+    /// Gain at one frame, with gain steps and automatic exposure.
+    [[nodiscard]] double GainAt(int camera_index, int frame) const;
+    /// False while the camera delivers nothing. Render works all the same.
+    [[nodiscard]] bool CameraPresent(int camera_index, int frame) const;
 
     /// Image of camera `camera_index` (0..7) at frame `frame` (0..frames-1), to
     /// FrameBytes(format()) bytes. A frame has the same bytes whenever and wherever it is rendered.
@@ -56,6 +62,10 @@ class SimulatedRig {
     [[nodiscard]] double HitchAngleAt(int frame) const;
     /// Same at any moment from the start of the drive to its last frame.
     [[nodiscard]] double HitchAngleAt(hal::Instant since_start) const;
+
+    /// Yaw of the trailer relative to the tractor as the cameras ride, with shaking; rad, positive
+    /// to the left.
+    [[nodiscard]] double ArticulationAt(int frame) const;
 
     struct SeenPoint {
         Eigen::Vector3d p_world_m;

@@ -1,0 +1,151 @@
+#include "drivers/simulated_scenario.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+namespace hitchview::drivers {
+namespace {
+
+using algo::Unit;
+
+constexpr double kDegree = std::numbers::pi / 180;
+// Positions in SimulatedRigGeometryTable.
+constexpr int kFront = 0, kLeftFront = 1, kRightFront = 2, kLeft = 3, kRear = 5, kRight = 7;
+
+/// Eight metres per second straight ahead.
+SimulationOptions Straight() {
+    SimulationOptions options;
+    options.profile = DriveProfile::kStraight;
+    return options;
+}
+
+SimulationOptions Vibration() {
+    SimulationOptions options = Straight();
+    options.shake[Unit::kTractor] = {.roll_pitch_rad = 0.022,
+                                     .yaw_rad = 0.014,
+                                     .translation_m = 0.025,
+                                     .lowest_hz = 2,
+                                     .highest_hz = 6};
+    options.shake[Unit::kTrailer] = {.roll_pitch_rad = 0.030,
+                                     .yaw_rad = 0.018,
+                                     .translation_m = 0.035,
+                                     .lowest_hz = 4,
+                                     .highest_hz = 12};
+    return options;
+}
+
+/// 14 s. No faster: at 60 degrees the tractor turns on a circle of 2.2 m.
+SimulationOptions Turn(double hitch_angle_rad) {
+    SimulationOptions options = Straight();
+    options.frames = 420;
+    options.speed = {{0, 2}, {3.5, 0.45}, {10.5, 0.45}, {14, 2}};
+    options.hitch_angle = {{0.5, 0}, {6.5, hitch_angle_rad}, {7.5, hitch_angle_rad}, {13.5, 0}};
+    return options;
+}
+
+SimulationOptions Reversing() {
+    SimulationOptions options = Straight();
+    options.speed = {{0, 0}, {1, -1.2}};
+    options.hitch_angle = {{0.5, 0}, {5, 22 * kDegree}, {6.5, 20 * kDegree}, {9.5, 0}};
+    return options;
+}
+
+SimulationOptions StopAndGo() {
+    SimulationOptions options = Straight();
+    options.speed = {{1, 8}, {3.5, 0}, {5, 0}, {8.5, 8}};
+    return options;
+}
+
+/// Its front draws level with the rear of the trailer after 1.6 s and its rear with the front of
+/// the tractor after 5 s.
+SimulationOptions OvertakingTruck() {
+    SimulationOptions options = Straight();
+    options.scene.trucks = {{.start_m = -20, .across_m = 3.6, .speed_mps = options.speed_mps + 6}};
+    return options;
+}
+
+SimulationOptions Night() {
+    SimulationOptions options = Straight();
+    options.scene.night = true;
+    options.sensor.gain = 1.6;
+    options.noise_sigma = 7;
+    return options;
+}
+
+SimulationOptions Snow() {
+    SimulationOptions options = Straight();
+    options.speed_mps = 5;
+    options.scene.ground = SceneOptions::Ground::kSnow;
+    options.scene.visibility_m = 180;
+    options.scene.overcast = 0.75;
+    options.scene.snowflakes = 1500;
+    return options;
+}
+
+/// In after about 3 s, out after about 7 s.
+SimulationOptions Tunnel() {
+    SimulationOptions options = Straight();
+    options.speed_mps = 10;
+    options.scene.tunnel = SceneOptions::Tunnel{.from_m = 30, .to_m = 70};
+    options.sensor.auto_exposure = true;
+    return options;
+}
+
+SimulationOptions ExposureSteps() {
+    SimulationOptions options = Straight();
+    options.sensor.gain_steps = {{kLeftFront, 40, 1.3},  {kLeft, 75, 0.7},  {kFront, 100, 0.75},
+                                 {kRight, 130, 1.25},    {kLeft, 160, 1.2}, {kRightFront, 190, 0.7},
+                                 {kLeftFront, 220, 0.8}, {kRear, 240, 1.3}, {kRight, 265, 1}};
+    return options;
+}
+
+SimulationOptions TexturelessYard() {
+    SimulationOptions options = Straight();
+    options.speed_mps = 4;
+    options.scene.ground = SceneOptions::Ground::kPlain;
+    options.scene.density = 0.15;
+    options.scene.overcast = 0.6;
+    return options;
+}
+
+SimulationOptions CameraLost() {
+    SimulationOptions options = Straight();
+    options.sensor.outages = {{kLeftFront, 60, 120}, {kRight, 180, 240}};
+    return options;
+}
+
+std::vector<Scenario> MakeScenarios() {
+    return {
+        {"straight", "straight ahead, the usual vibration", Straight()},
+        {"vibration", "strong vibration, the units shaken independently", Vibration()},
+        {"turn_left_60", "a turn to the left with 60 degrees at the hitch", Turn(-60 * kDegree)},
+        {"turn_right_60", "a turn to the right with 60 degrees at the hitch", Turn(60 * kDegree)},
+        {"reversing", "slowly backwards, the hitch angle grows and is corrected", Reversing()},
+        {"slalom", "left and right in turn", SimulationOptions{}},
+        {"stop_and_go", "brakes to a halt and drives on", StopAndGo()},
+        {"overtaking_truck", "a truck passes on the left, 6 m/s faster", OvertakingTruck()},
+        {"night", "darkness, headlights and street lamps, a noisy sensor", Night()},
+        {"snow", "falling snow over white ground", Snow()},
+        {"tunnel", "into a tunnel and out again, the exposure lags behind", Tunnel()},
+        {"exposure_steps", "the cameras' gains jump independently", ExposureSteps()},
+        {"textureless_yard", "plain grey ground with few things on it", TexturelessYard()},
+        {"camera_lost", "a tractor and a trailer camera drop out for 2 s each", CameraLost()},
+    };
+}
+
+}  // namespace
+
+std::span<const Scenario> Scenarios() {
+    static const std::vector<Scenario> scenarios = MakeScenarios();
+    return scenarios;
+}
+
+const Scenario* FindScenario(std::string_view name) {
+    const auto scenarios = Scenarios();
+    const auto found = std::find_if(scenarios.begin(), scenarios.end(),
+                                    [name](const Scenario& s) { return s.name == name; });
+    return found == scenarios.end() ? nullptr : &*found;
+}
+
+}  // namespace hitchview::drivers
