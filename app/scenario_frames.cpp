@@ -88,6 +88,7 @@ void ScenarioFrames::FillCamera(int camera) {
     hal::FramePool& pool = *cameras_[static_cast<std::size_t>(camera)].pool;
     for (FrameSet& set : batch_) {
         const int frame = static_cast<int>(set.sequence);
+        if (!rig_.CameraPresent(camera, frame)) continue;
         const auto slot = pool.Take();
         HV_EXPECT(slot.has_value());
         Fill(camera, frame, slot->bytes);

@@ -93,7 +93,7 @@ void ScenarioMeter::ObserveCoverage(const ShownPanorama& shown, const algo::Comp
 
 void ScenarioMeter::ObserveArticulation(int frame, std::optional<double> estimated_rad) {
     if (!estimated_rad || ArticulationRate_rad_s(frame) >= kFastTurn_rad_s) return;
-    const double error_rad = *estimated_rad - rig_.HitchAngleAt(frame);
+    const double error_rad = *estimated_rad - rig_.ArticulationAt(frame);
     articulation_squares_ += error_rad * error_rad;
     ++articulation_samples_;
 }

@@ -5,6 +5,7 @@
 
 #include "app/report.hpp"
 #include "app/scenario_table.hpp"
+#include "drivers/simulated_scenario.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -13,21 +14,6 @@ constexpr int kStopped = 1;
 constexpr int kWrongUse = 2;
 constexpr int kMachineFailed = 3;
 
-struct Scenario {
-    std::string_view name;
-    std::string_view what;
-    drivers::SimulationOptions options;
-};
-
-std::vector<Scenario> Scenarios() {
-    drivers::SimulationOptions straight;
-    straight.profile = drivers::DriveProfile::kStraight;
-    drivers::SimulationOptions slalom;
-    slalom.speed_mps = 4;
-    slalom.curvature_per_m = 0.12;
-    return {{"straight", "", straight}, {"slalom", "", slalom}};
-}
-
 int Fail(int code, const std::string& why) {
     std::fprintf(stderr, "%s\n", why.c_str());
     return code;
@@ -35,37 +21,32 @@ int Fail(int code, const std::string& why) {
 
 std::string KnownNames() {
     std::string names;
-    for (const Scenario& scenario : Scenarios()) names += ' ' + std::string(scenario.name);
+    for (const drivers::Scenario& scenario : drivers::Scenarios())
+        names += ' ' + std::string(scenario.name);
     return names;
 }
 
-/// Empty if one of them is unknown: that one is left in `unknown`.
-std::vector<Scenario> Chosen(const std::vector<std::string>& names, std::string& unknown) {
-    const std::vector<Scenario> all = Scenarios();
-    if (names.empty()) return all;
-    std::vector<Scenario> chosen;
+/// Error: one of the names is of no scenario.
+hal::Checked<std::vector<drivers::Scenario>> Chosen(const std::vector<std::string>& names) {
+    std::vector<drivers::Scenario> chosen;
     for (const std::string& name : names) {
-        const auto found =
-            std::find_if(all.begin(), all.end(), [&](const Scenario& s) { return s.name == name; });
-        if (found == all.end()) {
-            unknown = name;
-            return {};
-        }
+        const drivers::Scenario* found = drivers::FindScenario(name);
+        if (found == nullptr) return "there is no scenario " + name + ", there are:" + KnownNames();
         chosen.push_back(*found);
     }
+    const auto all = drivers::Scenarios();
+    if (names.empty()) chosen.assign(all.begin(), all.end());
     return chosen;
 }
 
 }  // namespace
 
 int ScenariosVerb(const ScenariosOptions& options, const std::atomic<bool>& stop) {
-    std::string unknown;
-    const std::vector<Scenario> chosen = Chosen(options.names, unknown);
-    if (chosen.empty())
-        return Fail(kWrongUse, "there is no scenario " + unknown + ", there are:" + KnownNames());
+    const auto chosen = Chosen(options.names);
+    if (!chosen) return Fail(kWrongUse, chosen.error());
     std::fputs(ScenarioHead().c_str(), stdout);
     nlohmann::json report;
-    for (const Scenario& scenario : chosen) {
+    for (const drivers::Scenario& scenario : chosen.value()) {
         drivers::SimulationOptions simulation = scenario.options;
         simulation.width_px = options.camera_width_px;
         simulation.height_px = options.camera_width_px * 9 / 16;

@@ -122,8 +122,8 @@ void TruthOverlap::ObserveCorner(const ShownPanorama& shown, const ComposedMap& 
         !HasData(map, geometry, Unit::kTrailer, row, col, shown.cameras_missing))
         return;
     const int camera = Shower(map, geometry, row, col);
-    if (camera < 0) return;
     const int frame = static_cast<int>(shown.picture.header.sequence);
+    if (camera < 0 || (shown.cameras_missing >> camera & 1U) != 0) return;
     const ComposedMap::Corner& corner = map.corner(camera, row, col);
     const auto point = sight_.rig().WorldPointAt(sight_.RigCamera(Unit::kTractor, camera), frame,
                                                  Vector2d(corner.x, corner.y));

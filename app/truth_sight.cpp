@@ -12,6 +12,7 @@ int TruthSight::RigCamera(Unit unit, int camera) const {
 /// In the unit's view alone.
 Sighting TruthSight::Locate(Unit unit, int camera, int frame, const Vector3d& p_world_m) const {
     const algo::UnitGeometry& geometry = *geometry_.units[unit];
+    if (!rig_.CameraPresent(RigCamera(unit, camera), frame)) return {};
     const auto pixel = rig_.ProjectWorldPoint(RigCamera(unit, camera), frame, p_world_m);
     if (!pixel) return {};
     const auto ray = geometry.ViewRay(camera, *pixel);
