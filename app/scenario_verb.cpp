@@ -19,6 +19,12 @@ int Fail(int code, const std::string& why) {
     return code;
 }
 
+/// A row takes minutes: it is not held back.
+void PrintNow(const std::string& text) {
+    std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+}
+
 std::string KnownNames() {
     std::string names;
     for (const drivers::Scenario& scenario : drivers::Scenarios())
@@ -44,7 +50,7 @@ hal::Checked<std::vector<drivers::Scenario>> Chosen(const std::vector<std::strin
 int ScenariosVerb(const ScenariosOptions& options, const std::atomic<bool>& stop) {
     const auto chosen = Chosen(options.names);
     if (!chosen) return Fail(kWrongUse, chosen.error());
-    std::fputs(ScenarioHead().c_str(), stdout);
+    PrintNow(ScenarioHead());
     nlohmann::json report;
     for (const drivers::Scenario& scenario : chosen.value()) {
         drivers::SimulationOptions simulation = scenario.options;
@@ -55,8 +61,7 @@ int ScenariosVerb(const ScenariosOptions& options, const std::atomic<bool>& stop
         const auto figures = RunScenario(name, simulation, options.run, stop);
         if (!figures) return Fail(kMachineFailed, figures.error());
         if (stop) return kStopped;
-        std::fputs(ScenarioRow(name, figures.value()).c_str(), stdout);
-        std::fflush(stdout);
+        PrintNow(ScenarioRow(name, figures.value()));
         report[name] = figures.value();
     }
     if (options.json.empty()) return 0;
