@@ -48,8 +48,8 @@ class ScenarioFrames {
     std::vector<FrameSet> batch_;
 };
 
-/// Name of a folder for frames of this rig: equal only for rigs that show the same. Looks at a few
-/// frames of every camera.
+/// Name of a folder for frames of this rig: equal only for rigs that show the same. Looks at tiny
+/// pictures of every camera all along the drive.
 std::string CacheKey(const drivers::SimulatedRig& rig);
 
 }  // namespace hitchview::app

@@ -73,8 +73,11 @@ void ScenarioMeter::ObserveWarp(const algo::ComposedMap& map) {
     for (const Unit unit : algo::kUnits) {
         const WarpGrid& warp = warps[unit];
         folded_cells_[unit] += FoldedCells(warp);
-        least_cell_ratio_[unit] =
-            std::min(least_cell_ratio_[unit], LeastCellRatio(warp, warps[Other(unit)]));
+        const WarpGrid& other = warps[Other(unit)];
+        const WarpGrid rest = WithoutTurn(warp, geometry_.canvas);
+        least_cell_ratio_[unit] = std::min(least_cell_ratio_[unit], LeastCellRatio(rest, other));
+        least_turned_cell_ratio_[unit] =
+            std::min(least_turned_cell_ratio_[unit], LeastCellRatio(warp, other));
         least_view_ratio_[unit] = std::min(least_view_ratio_[unit], AffineRatio(warp));
     }
 }
@@ -120,6 +123,7 @@ json ScenarioMeter::Figures() const {
         figures["motion"][name] = PathJson(path_.ShakeOf(unit));
         figures["warp"][name] = {{"folded_cells", folded_cells_[unit]},
                                  {"least_cell_ratio", least_cell_ratio_[unit]},
+                                 {"least_turned_cell_ratio", least_turned_cell_ratio_[unit]},
                                  {"least_view_ratio", least_view_ratio_[unit]}};
     }
     for (const Overlap overlap : algo::kOverlaps) {

@@ -36,7 +36,8 @@ class ScenarioMeter {
     algo::PerOverlap<TruthSeam> seams_;
     algo::PerOverlap<FieldJump> jumps_;
     algo::PerUnit<long> folded_cells_;
-    algo::PerUnit<double> least_cell_ratio_{{1, 1}};
+    algo::PerUnit<double> least_cell_ratio_{{1, 1}};         ///< without the unit's turn
+    algo::PerUnit<double> least_turned_cell_ratio_{{1, 1}};  ///< with it
     algo::PerUnit<double> least_view_ratio_{{1, 1}};
     double least_coverage_ = 1;         ///< of what the calibration covers with a straight vehicle
     double least_hinged_coverage_ = 1;  ///< of what it covers at the true articulation

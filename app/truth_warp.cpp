@@ -67,6 +67,10 @@ bool Folded(const WarpGrid& warp, int row, int col) {
     return Cross(right + b - a, down + c - a) <= 0 || Cross(right + d - c, down + d - b) <= 0;
 }
 
+Vector2d CanvasPixel(const WarpGrid& warp, int row, int col) {
+    return {col * warp.spacing_px - 0.5, row * warp.spacing_px - 0.5};
+}
+
 }  // namespace
 
 WarpGrid::WarpGrid(int row_count, int col_count, double spacing)
@@ -98,12 +102,41 @@ WarpGrid WarpOf(const ComposedMap& map, const RigGeometry& geometry, Unit unit, 
         for (int col = 0; col < warp.cols; ++col) {
             const auto to = Unmoved(map, geometry, unit, row * step, col * step);
             if (!to) continue;
-            const Vector2d from(col * spacing - 0.5, row * spacing - 0.5);
-            warp.motion_px[warp.At(row, col)] = geometry.canvas.Difference(*to, from);
+            warp.motion_px[warp.At(row, col)] =
+                geometry.canvas.Difference(*to, CanvasPixel(warp, row, col));
             warp.known[warp.At(row, col)] = 1;
         }
     }
     return warp;
+}
+
+/// The turn by Kabsch's algorithm on rays.
+WarpGrid WithoutTurn(const WarpGrid& warp, const algo::Projection& canvas) {
+    Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+    const auto known = std::count(warp.known.begin(), warp.known.end(), 1);
+    if (known < 3) return warp;
+    const auto visit = [&](const auto& act) {
+        for (int row = 0; row < warp.rows; ++row) {
+            for (int col = 0; col < warp.cols; ++col) {
+                const Vector2d from = CanvasPixel(warp, row, col);
+                const Vector2d to = from + warp.motion_px[warp.At(row, col)];
+                if (warp.known[warp.At(row, col)] != 0) act(warp.At(row, col), from, to);
+            }
+        }
+    };
+    visit([&](std::size_t, const Vector2d& from, const Vector2d& to) {
+        products += canvas.Ray(from).normalized() * canvas.Ray(to).normalized().transpose();
+    });
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products,
+                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Matrix3d U = svd.matrixU();
+    if ((U * svd.matrixV().transpose()).determinant() < 0) U.col(2) *= -1;
+    const Eigen::Matrix3d R_from_to = U * svd.matrixV().transpose();
+    WarpGrid rest = warp;
+    visit([&](std::size_t at, const Vector2d& from, const Vector2d& to) {
+        rest.motion_px[at] = canvas.Difference(canvas.Pixel(R_from_to * canvas.Ray(to)), from);
+    });
+    return rest;
 }
 
 int FoldedCells(const WarpGrid& warp) {

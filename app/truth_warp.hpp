@@ -37,6 +37,11 @@ bool HasData(const algo::ComposedMap& map, const RigGeometry& geometry, algo::Un
 WarpGrid WarpOf(const algo::ComposedMap& map, const RigGeometry& geometry, algo::Unit unit,
                 int step);
 
+/// What is left of the motion beside the one turn of the whole vehicle that explains it best: a
+/// turned camera bends its part of a ring and yet distorts nothing. Below three known corners: as
+/// it is.
+WarpGrid WithoutTurn(const WarpGrid& warp, const algo::Projection& canvas);
+
 /// Cells of which one of both triangles is turned over or has no area.
 int FoldedCells(const WarpGrid& warp);
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -133,6 +134,34 @@ TEST(TruthWarpTest, CellsWithoutDataAndCellsOfTheOverlapDoNotCount) {
     EXPECT_NEAR(LeastCellRatio(warp, warp), 1, 1e-9);
     warp.known[warp.At(5, 7)] = 0;
     EXPECT_EQ(FoldedCells(warp), 0);
+}
+
+/// A whole ring whose rays are turned, and one vertex pulled beside that.
+WarpGrid TurnedRing(const algo::Projection& ring, const Vector2d& pull_px) {
+    const Eigen::Matrix3d turn = (Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(0.05, Eigen::Vector3d(1, 1, 0).normalized()))
+                                     .toRotationMatrix();
+    WarpGrid warp(ring.height_px / 16 + 1, ring.width_px / 16, 16);
+    for (int row = 0; row < warp.rows; ++row) {
+        for (int col = 0; col < warp.cols; ++col) {
+            const Vector2d from(col * 16 - 0.5, row * 16 - 0.5);
+            warp.motion_px[warp.At(row, col)] =
+                ring.Difference(ring.Pixel(turn * ring.Ray(from)), from);
+            warp.known[warp.At(row, col)] = 1;
+        }
+    }
+    warp.motion_px[warp.At(9, 40)] += pull_px;
+    return warp;
+}
+
+TEST(TruthWarpTest, ATurnOfTheWholeUnitIsNoDistortionButAPullBesideItIs) {
+    const auto ring = algo::Projection::Cylinder(2048, 360, 0.48);
+    const WarpGrid turned = TurnedRing(ring, {0, 0});
+    const WarpGrid nothing(turned.rows, turned.cols, 16);
+    EXPECT_LT(LeastCellRatio(turned, nothing), 0.98);
+    EXPECT_GT(LeastCellRatio(WithoutTurn(turned, ring), nothing), 1 - 1e-6);
+    const WarpGrid pulled = WithoutTurn(TurnedRing(ring, {3, 0}), ring);
+    EXPECT_LT(LeastCellRatio(pulled, nothing), 0.95);
 }
 
 TEST(TruthSeamTest, TheWaitRunsFromTheOverlapsReturnToTheLock) {
