@@ -19,6 +19,8 @@ constexpr double kDashPeriod_m = 9;
 constexpr float kLineHalfWidth_m = 0.07F;
 constexpr double kCrossing_m = 47;  // between pedestrian crossings
 constexpr double kCrossingDepth_m = 3;
+constexpr double kTrack_m = 1.5;  // between the wheels of one axle
+constexpr double kTrackHalfWidth_m = 0.2;
 constexpr double kRepair_m = 6.5;  // between repaired places
 
 /// Share of the interval of width `extent` around `x` that lies within `low`..`high`.
@@ -46,8 +48,9 @@ float Wrapped(double x) {
 
 }  // namespace
 
-Ground::Ground(const Palette& palette, const Road& road, std::uint32_t seed)
-    : palette_(palette), road_(road), seed_(seed) {}
+Ground::Ground(const Palette& palette, const Road& road, SceneOptions::Ground kind,
+               std::uint32_t seed)
+    : palette_(palette), road_(road), kind_(kind), seed_(seed) {}
 
 Ground::OnRoad Ground::ToRoad(const Patch& patch) const {
     const RoadPoint at = road_.FromWorld(patch.p_world);
@@ -127,7 +130,30 @@ Colour Ground::Meadow(const Patch& patch) const {
                SmoothStep(0.95F, 1.25F, far) * 0.7F);
 }
 
+Colour Ground::Plain(const Patch& patch) const {
+    const float grain = Sampled(Paint::kAsphalt, kAsphaltRepeat_m, patch).y / 100.0F;
+    const float light = 0.94F + 0.02F * grain + 0.04F * VariationAt(kFarVariation_m, patch);
+    return FromRgb(122, 122, 119) * light;
+}
+
+/// Thin where wheels pass, thick beside the road.
+Colour Ground::UnderSnow(const Colour& ground, const Patch& patch, const OnRoad& road) const {
+    const float grain = Sampled(Paint::kGravel, kGravelRepeat_m, patch).y / 115.0F;
+    const float drift = VariationAt(kNearVariation_m, patch);
+    float tracks = 0;
+    for (const double lane : {0.0, RoadProfile::kMiddleLine + RoadProfile::kMiddleLine}) {
+        for (const double wheel : {-kTrack_m / 2, kTrack_m / 2}) {
+            tracks += Cover(road.at.across_m, lane + wheel - kTrackHalfWidth_m,
+                            lane + wheel + kTrackHalfWidth_m, road.across_m + 0.2F);
+        }
+    }
+    const float worn = std::min(tracks * (0.5F + 0.4F * grain), 0.9F);
+    const Colour snow = FromRgb(216, 221, 228) * (0.66F + 0.14F * grain + 0.2F * drift);
+    return Mix(ground, snow, 0.93F * (1 - worn));
+}
+
 Colour Ground::ColourOf(const Patch& patch) const {
+    if (kind_ == SceneOptions::Ground::kPlain) return Plain(patch);
     const OnRoad road = ToRoad(patch);
     const float variation = VariationAt(kNearVariation_m, patch);
     const double across = road.at.across_m;
@@ -143,6 +169,7 @@ Colour Ground::ColourOf(const Patch& patch) const {
     }
     const float rest = 1 - std::max(cleared, paved);
     if (rest > 0) colour += Meadow(patch) * rest;
+    if (kind_ == SceneOptions::Ground::kSnow) return UnderSnow(colour, patch, road);
     return colour * (0.72F + 0.34F * variation);
 }
 

@@ -17,10 +17,11 @@ struct RoadProfile {
     static constexpr double kPavement = 0.35;  ///< asphalt outside the outer lines
 };
 
-/// Road, shoulders and grass in the plane z = 0. Thread-safe.
+/// The plane z = 0: road, shoulders and grass, with or without snow, or one plain grey.
+/// Thread-safe.
 class Ground {
  public:
-    Ground(const Palette& palette, const Road& road, std::uint32_t seed);
+    Ground(const Palette& palette, const Road& road, SceneOptions::Ground kind, std::uint32_t seed);
 
     /// Mean colour of the area that one pixel sees: `across_m` wide at `p_world`, `along_m` long in
     /// the horizontal direction of sight `sight` (unit length).
@@ -42,11 +43,15 @@ class Ground {
     [[nodiscard]] Colour Sampled(Paint paint, double repeat_m, const Patch& patch) const;
     [[nodiscard]] Colour Pavement(const Patch& patch, const OnRoad& road) const;
     [[nodiscard]] Colour Meadow(const Patch& patch) const;
+    [[nodiscard]] Colour Plain(const Patch& patch) const;
+    [[nodiscard]] Colour UnderSnow(const Colour& ground, const Patch& patch,
+                                   const OnRoad& road) const;
     [[nodiscard]] float LineCover(const OnRoad& road) const;
     [[nodiscard]] float RepairCover(const OnRoad& road) const;
 
     const Palette& palette_;
     const Road& road_;
+    SceneOptions::Ground kind_;
     std::uint32_t seed_;
 };
 

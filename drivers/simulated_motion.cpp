@@ -193,6 +193,17 @@ Isometry3d Motion::PoseAt(hal::Instant since_start, algo::Unit unit, Shaking sha
                      tractor ? VehicleDimensions::kTractorAxle : -VehicleDimensions::kTrailerAxle);
 }
 
+std::vector<Eigen::Vector2d> Motion::PathOffRoad() const {
+    constexpr double kApart_m = 0.5;
+    std::vector<Eigen::Vector2d> path;
+    if (options_.hitch_angle.empty()) return path;
+    for (const State& state : states_) {
+        const Eigen::Vector2d p_m{state.x_m, state.y_m};
+        if (path.empty() || (p_m - path.back()).norm() > kApart_m) path.push_back(p_m);
+    }
+    return path;
+}
+
 double Motion::HitchAngleAt(hal::Instant since_start) const {
     return StateAt(since_start).hitch_rad;
 }

@@ -65,6 +65,8 @@ class Motion {
                                            Shaking shaking) const;
     /// Yaw of the trailer relative to the tractor, positive to the left, without shaking.
     [[nodiscard]] double HitchAngleAt(hal::Instant since_start) const;
+    /// Places of the hitch on the drive, less than a metre apart, where it leaves the road.
+    [[nodiscard]] std::vector<Eigen::Vector2d> PathOffRoad() const;
 
  private:
     struct State {

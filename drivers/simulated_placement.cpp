@@ -5,6 +5,7 @@
 
 #include "drivers/simulated_ground.hpp"
 #include "drivers/simulated_noise.hpp"
+#include "drivers/simulated_structures.hpp"
 
 namespace hitchview::drivers {
 namespace {
@@ -16,6 +17,7 @@ using Eigen::Vector3f;
 constexpr double kBefore_m = 260;  // the world goes on before and behind the route
 constexpr int kLumps = 8;          // of the crown of a tree, the first in its middle
 constexpr double kMargin_m = 0.8;  // between two things
+constexpr double kDriven_m = 5;    // around the vehicle
 
 /// Where a thing may stand: a free place, the heading of the road, and dice for its looks.
 struct Site {
@@ -221,9 +223,10 @@ class Occupancy {
             const double apart_m = c.radius_m + radius_m + kMargin_m;
             return (c.p_m - p_m).squaredNorm() < apart_m * apart_m;
         });
-        if (is_free) taken_.push_back({p_m, radius_m});
+        if (is_free) Block(p_m, radius_m);
         return is_free;
     }
+    void Block(const Vector2d& p_m, double radius_m) { taken_.push_back({p_m, radius_m}); }
 
  private:
     struct Circle {
@@ -232,6 +235,11 @@ class Occupancy {
     };
     std::vector<Circle> taken_;
 };
+
+bool ClearOfTunnel(const SceneOptions& scene, const Vector2d& p_m, double radius_m) {
+    return !scene.tunnel || p_m.x() < scene.tunnel->from_m - radius_m ||
+           p_m.x() > scene.tunnel->to_m + radius_m;
+}
 
 bool ClearOfRoad(const Road& road, const Vector2d& p_m, const Strip& strip) {
     const double across_m = road.FromWorld(p_m).across_m;
@@ -242,8 +250,13 @@ bool ClearOfRoad(const Road& road, const Vector2d& p_m, const Strip& strip) {
 
 class Town {
  public:
-    Town(const Road& road, double route_m, std::uint32_t seed)
-        : road_(road), dice_(seed), first_m_(-kBefore_m), last_m_(route_m + kBefore_m) {
+    Town(const Road& road, const Stage& stage, std::uint32_t seed)
+        : road_(road),
+          scene_(stage.scene),
+          dice_(seed),
+          first_m_(-kBefore_m),
+          last_m_(stage.route_m + kBefore_m) {
+        for (const Vector2d& p_m : stage.driven) occupancy_.Block(p_m, kDriven_m);
         if (const auto round_m = road.Circumference()) {
             first_m_ = 0;
             last_m_ = *round_m;
@@ -258,7 +271,12 @@ class Town {
         }
     }
 
-    std::vector<Solid> Take() { return builder_.Take(); }
+    std::vector<Solid> Take() {
+        std::vector<Solid> solids = builder_.Take();
+        if (scene_.tunnel) AppendTunnel(*scene_.tunnel, solids);
+        if (scene_.night) AppendStreetLamps(road_, first_m_, last_m_, solids);
+        return solids;
+    }
 
  private:
     void FillRow(const Strip& strip, double across_m, double width_m) {
@@ -268,7 +286,8 @@ class Town {
         for (double along_m = first_m_; along_m < last_m_; along_m += step_m) {
             const Vector2d p_m = road_.ToWorld(along_m + dice_.Between(0, 0.7) * step_m,
                                                across_m + dice_.Between(0, 1) * width_m);
-            if (ClearOfRoad(road_, p_m, strip) && occupancy_.Take(p_m, strip.radius_m)) {
+            if (ClearOfRoad(road_, p_m, strip) && ClearOfTunnel(scene_, p_m, strip.radius_m) &&
+                occupancy_.Take(p_m, strip.radius_m)) {
                 Build(strip, p_m);
             }
         }
@@ -277,10 +296,12 @@ class Town {
     void Build(const Strip& strip, const Vector2d& p_m) {
         const RoadPoint road = road_.FromWorld(p_m);
         Site site{p_m, std::atan2(road.sin_heading, road.cos_heading), Dice(dice_.Next())};
+        if (scene_.density < 1 && !Dice(site.dice).Says(scene_.density)) return;
         strip.add(builder_, site);
     }
 
     const Road& road_;
+    const SceneOptions& scene_;
     Dice dice_;
     double first_m_, last_m_;
     Occupancy occupancy_;
@@ -289,8 +310,8 @@ class Town {
 
 }  // namespace
 
-std::vector<Solid> PlaceSolids(const Road& road, double route_m, std::uint32_t seed) {
-    Town town(road, route_m, seed);
+std::vector<Solid> PlaceSolids(const Road& road, const Stage& stage, std::uint32_t seed) {
+    Town town(road, stage, seed);
     for (const Strip& strip : kStrips) town.Fill(strip);
     return town.Take();
 }

@@ -118,11 +118,12 @@ Renderer::Wedge Renderer::WedgeOf(int column, int row, int side_px) const {
     return wedge;
 }
 
-void Renderer::Render(const Eigen::Isometry3d& T_world_camera, const Exposure& exposure,
-                      int threads, Workspace& workspace, std::span<std::uint8_t> out_nv12) const {
+void Renderer::Render(const Eigen::Isometry3d& T_world_camera, const Moment& moment,
+                      const Exposure& exposure, int threads, Workspace& workspace,
+                      std::span<std::uint8_t> out_nv12) const {
     HV_EXPECT(threads >= 1);
     HV_EXPECT(out_nv12.size() == rays_camera_.size() * 3 / 2);
-    world_.Look(T_world_camera.translation(), kSmallest_px * pixel_rad_, workspace.around);
+    world_.Look(T_world_camera.translation(), moment, kSmallest_px * pixel_rad_, workspace.around);
     workspace.blocks.resize(blocks_.size());
     workspace.strips.resize(static_cast<std::size_t>(threads));
     const Frame frame{T_world_camera.linear().cast<float>(), exposure, workspace.around,

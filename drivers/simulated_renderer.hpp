@@ -41,8 +41,9 @@ class Renderer {
 
     /// Writes full-range NV12, tightly packed, to `out_nv12`. `threads` >= 1 share the work; the
     /// image does not depend on their number. Thread-safe, given one workspace for each thread.
-    void Render(const Eigen::Isometry3d& T_world_camera, const Exposure& exposure, int threads,
-                Workspace& workspace, std::span<std::uint8_t> out_nv12) const;
+    void Render(const Eigen::Isometry3d& T_world_camera, const Moment& moment,
+                const Exposure& exposure, int threads, Workspace& workspace,
+                std::span<std::uint8_t> out_nv12) const;
 
  private:
     /// Planes through the eye that bound a rectangle of the image; normals point inwards.

@@ -96,8 +96,39 @@ SimulatedRig::SimulatedRig(const SimulationOptions& options)
     : options_(options),
       cameras_(SimulatedRigGeometry(options.width_px, options.height_px)),
       motion_(options),
-      world_(options),
-      renderer_(world_, cameras_[0].geometry.model) {}
+      world_(options, motion_.PathOffRoad()),
+      renderer_(world_, cameras_[0].geometry.model),
+      snowfall_(options.scene.snowflakes, Hash(options.seed, 500)) {
+    if (!options.sensor.auto_exposure) return;
+    auto_exposure_.emplace(options, kCameras, [this](int camera_index, int frame) {
+        return LightAround(camera_index, frame);
+    });
+}
+
+Moment SimulatedRig::MomentOf(int frame) const {
+    Moment moment;
+    moment.time_s = std::chrono::duration<double>(FrameTime(options_, frame)).count();
+    for (const algo::Unit unit : algo::kUnits)
+        moment.T_unit_world[unit] = PoseAt(frame, unit).inverse().cast<float>();
+    return moment;
+}
+
+/// Mean on the ground around a place a little ahead of the camera.
+double SimulatedRig::LightAround(int camera_index, int frame) const {
+    constexpr double kAhead_m = 7;
+    constexpr int kPlaces = 4;
+    constexpr double kApart_m = 1.3;
+    const Isometry3d T_world_camera = CameraPoseAt(camera_index, frame);
+    const Moment moment = MomentOf(frame);
+    double sum = 0;
+    for (int i = 0; i < kPlaces; ++i) {
+        Vector3d place = T_world_camera.translation();
+        place.x() += kAhead_m * T_world_camera.linear()(0, 2) + kApart_m * i;
+        place.z() = 0;
+        sum += world_.lighting().LevelAt(place, moment);
+    }
+    return sum / kPlaces;
+}
 
 const SimulatedCameraGeometry& SimulatedRig::camera(int camera_index) const {
     HV_EXPECT(camera_index >= 0 && camera_index < kCameras);
@@ -118,6 +149,7 @@ double SimulatedRig::GainAt(int camera_index, int frame) const {
     for (const SensorOptions::GainStep& step : options_.sensor.gain_steps) {
         if (step.camera == camera_index && step.first_frame <= frame) factor = step.factor;
     }
+    if (auto_exposure_) factor *= auto_exposure_->GainAt(camera_index, frame);
     return GainOf(camera_index) * factor * options_.sensor.gain;
 }
 
@@ -134,10 +166,25 @@ void SimulatedRig::Render(int camera_index, int frame, Renderer::Workspace& work
     const std::uint32_t noise_seed =
         Hash(Hash(options_.seed, 400), static_cast<std::uint32_t>(camera_index),
              static_cast<std::uint32_t>(frame));
-    renderer_.Render(CameraPoseAt(camera_index, frame),
+    renderer_.Render(CameraPoseAt(camera_index, frame), MomentOf(frame),
                      {static_cast<float>(GainAt(camera_index, frame)),
                       static_cast<float>(options_.noise_sigma), noise_seed},
                      options_.render_threads, workspace, out_nv12);
+    if (options_.scene.snowflakes > 0) DrawSnow(camera_index, frame, out_nv12);
+}
+
+void SimulatedRig::DrawSnow(int camera_index, int frame, std::span<std::uint8_t> nv12) const {
+    constexpr std::chrono::milliseconds kShutter{6};
+    const hal::Instant opens = FrameTime(options_, frame);
+    const SimulatedCameraGeometry& at = camera(camera_index);
+    const auto pose = [&](hal::Instant since_start) {
+        return motion_.PoseAt(since_start, at.unit, Shaking::kWith) * at.geometry.T_unit_camera;
+    };
+    snowfall_.DrawOver(
+        {at.geometry.model, pose(opens), pose(opens + kShutter),
+         std::chrono::duration<double>(opens).count(),
+         std::chrono::duration<double>(kShutter).count(), GainAt(camera_index, frame)},
+        nv12);
 }
 
 Isometry3d SimulatedRig::PoseAt(int frame, algo::Unit unit, Shaking shaking) const {
@@ -170,8 +217,8 @@ std::optional<SimulatedRig::SeenPoint> SimulatedRig::WorldPointAt(int camera_ind
     if (!ray_camera) return std::nullopt;
     const Isometry3d T_world_camera = CameraPoseAt(camera_index, frame);
     const Vector3d ray_world = T_world_camera.linear() * *ray_camera;
-    const double distance_m =
-        std::min(world_.DistanceTo(T_world_camera.translation(), ray_world), kFar_m);
+    const double distance_m = std::min(
+        world_.DistanceTo(T_world_camera.translation(), MomentOf(frame), ray_world), kFar_m);
     return SeenPoint{T_world_camera.translation() + distance_m * ray_world, distance_m};
 }
 
@@ -184,7 +231,8 @@ std::optional<Vector2d> SimulatedRig::ProjectWorldPoint(int camera_index, int fr
     if (!pixel || !InImage(lens, *pixel)) return std::nullopt;
     if (occlusion == Occlusion::kIgnored) return pixel;
     const Vector3d to_point = p_world_m - T_world_camera.translation();
-    const double first_m = world_.DistanceTo(T_world_camera.translation(), to_point.normalized());
+    const double first_m =
+        world_.DistanceTo(T_world_camera.translation(), MomentOf(frame), to_point.normalized());
     if (first_m < to_point.norm() * (1 - kSurfaceTolerance)) return std::nullopt;
     return pixel;
 }

@@ -6,10 +6,13 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "algo/camera_model.hpp"
+#include "drivers/simulated_exposure.hpp"
 #include "drivers/simulated_motion.hpp"
 #include "drivers/simulated_renderer.hpp"
+#include "drivers/simulated_snowfall.hpp"
 
 namespace hitchview::drivers {
 
@@ -83,12 +86,17 @@ class SimulatedRig {
 
  private:
     explicit SimulatedRig(const SimulationOptions& options);
+    [[nodiscard]] Moment MomentOf(int frame) const;
+    [[nodiscard]] double LightAround(int camera_index, int frame) const;
+    void DrawSnow(int camera_index, int frame, std::span<std::uint8_t> nv12) const;
 
     SimulationOptions options_;
     SimulatedRigGeometryTable cameras_;
     Motion motion_;
     World world_;
     Renderer renderer_;
+    Snowfall snowfall_;
+    std::optional<AutoExposure> auto_exposure_;
 };
 
 }  // namespace hitchview::drivers

@@ -36,6 +36,7 @@ struct Solid {
     Eigen::Vector3f half_m = Eigen::Vector3f::Ones();    ///< half lengths along its own axes
     double yaw_rad = 0;
     std::array<Coat, 3> coats{};  ///< sides facing x, sides facing y, top; others use the first
+    bool glows = false;           ///< equally bright by day and night
 };
 
 /// A solid as seen from one eye: coordinates relative to the eye, world axes.

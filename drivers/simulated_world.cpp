@@ -14,10 +14,11 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr float kGroundEnd_m = 2500;  // the plane beyond is less than a pixel high
-constexpr float kHazeHalf_m = 900;    // distance at which the air hides half
 
 double Route_m(const SimulationOptions& o) {
-    return o.speed_mps * std::chrono::duration<double>(FrameTime(o, o.frames)).count();
+    double fastest_mps = o.speed_mps;
+    for (const Key& key : o.speed) fastest_mps = std::max(fastest_mps, key.value);
+    return fastest_mps * std::chrono::duration<double>(FrameTime(o, o.frames)).count();
 }
 
 /// Textures about as fine as the pixels need: smaller images are made sooner.
@@ -29,10 +30,6 @@ int BackdropTexels(const SimulationOptions& o) {
     return static_cast<int>(std::bit_ceil(static_cast<unsigned>(3 * o.width_px)));
 }
 
-Colour ThroughAir(const Colour& colour, float distance_m) {
-    return Mix(colour, kHaze, distance_m / (distance_m + kHazeHalf_m));
-}
-
 bool Fills(const VisibleSolid& solid, float smallest_rad) {
     const float radius_m = solid.half_m.norm();
     return radius_m > smallest_rad * solid.nearest_m;
@@ -40,19 +37,29 @@ bool Fills(const VisibleSolid& solid, float smallest_rad) {
 
 }  // namespace
 
-World::World(const SimulationOptions& options)
+World::World(const SimulationOptions& options, std::span<const Eigen::Vector2d> driven)
     : palette_(Hash(options.seed, 1), PaintTexels(options)),
       road_(options),
-      ground_(palette_, road_, Hash(options.seed, 2)),
+      ground_(palette_, road_, options.scene.ground, Hash(options.seed, 2)),
       backdrop_(Hash(options.seed, 3), BackdropTexels(options)),
-      solids_(PlaceSolids(road_, Route_m(options), Hash(options.seed, 4))) {}
+      lighting_(options.scene, road_),
+      traffic_(options.scene.trucks, road_, Hash(options.seed, 5)),
+      solids_(PlaceSolids(road_, {Route_m(options), options.scene, driven}, Hash(options.seed, 4))),
+      haze_half_m_(static_cast<float>(options.scene.visibility_m)),
+      overcast_(static_cast<float>(options.scene.overcast)),
+      air_(kHaze * lighting_.sky()) {}
 
-void World::Look(const Vector3d& eye_world, float smallest_rad, Surroundings& out) const {
+void World::Look(const Vector3d& eye_world, const Moment& moment, float smallest_rad,
+                 Surroundings& out) const {
     out.eye_world = eye_world;
+    out.moment = moment;
+    traffic_.PlaceAt(moment.time_s, out.moving);
+    const std::size_t count = solids_.size() + out.moving.size();
     out.solids.clear();
-    out.solids.reserve(solids_.size());
-    for (std::size_t i = 0; i < solids_.size(); ++i) {
-        const VisibleSolid solid(solids_[i], static_cast<std::uint32_t>(i), eye_world);
+    out.solids.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto index = static_cast<std::uint32_t>(i);
+        const VisibleSolid solid(SolidOf(out, index), index, eye_world);
         if (Fills(solid, smallest_rad)) out.solids.push_back(solid);
     }
     std::sort(out.solids.begin(), out.solids.end(), [](const auto& a, const auto& b) {
@@ -76,16 +83,36 @@ Hit World::Cast(const Surroundings& around, std::span<const std::uint32_t> nearb
     return hit;
 }
 
+Colour World::ThroughAir(const Colour& colour, float distance_m) const {
+    return Mix(colour, air_, distance_m / (distance_m + haze_half_m_));
+}
+
+/// `p_m`: relative to the eye.
+float World::LightAt(const Surroundings& around, const Vector3f& p_m) const {
+    if (lighting_.plain_daylight()) return 1;
+    return lighting_.LevelAt(around.eye_world + p_m.cast<double>(), around.moment);
+}
+
 Colour World::ColourOf(const Surroundings& around, std::span<const std::uint32_t> nearby,
                        const Vector3f& direction, const Hit& hit, float pixel_rad) const {
-    if (hit.what == Hit::kSky) return backdrop_.ColourOf(direction, pixel_rad);
+    if (hit.what == Hit::kSky) {
+        const Colour far = backdrop_.ColourOf(direction, pixel_rad) * lighting_.sky();
+        return overcast_ > 0 ? Mix(far, air_, overcast_) : far;
+    }
     if (hit.what == Hit::kGround) {
         return GroundColour(around, nearby, direction, hit.distance_m, pixel_rad);
     }
+    return SolidColour(around, direction, hit, pixel_rad);
+}
+
+Colour World::SolidColour(const Surroundings& around, const Vector3f& direction, const Hit& hit,
+                          float pixel_rad) const {
     const VisibleSolid& visible = around.solids[static_cast<std::size_t>(hit.what)];
-    const Colour colour = ShadeSolid(palette_, solids_[visible.index], visible, direction,
-                                     {hit.distance_m, hit.face}, pixel_rad);
-    return ThroughAir(colour, hit.distance_m);
+    const Solid& solid = SolidOf(around, visible.index);
+    const Colour colour =
+        ShadeSolid(palette_, solid, visible, direction, {hit.distance_m, hit.face}, pixel_rad);
+    const float light = solid.glows ? 1.0F : LightAt(around, hit.distance_m * direction);
+    return ThroughAir(colour * light, hit.distance_m);
 }
 
 Colour World::GroundColour(const Surroundings& around, std::span<const std::uint32_t> nearby,
@@ -101,12 +128,14 @@ Colour World::GroundColour(const Surroundings& around, std::span<const std::uint
         if (solid.nearest_m > distance_m) break;
         if (solid.shape == Shape::kShadow) shadow = std::max(shadow, ShadowAt(solid, p_m));
     }
-    return ThroughAir(colour * (1 - shadow), distance_m);
+    const float light = LightAt(around, p_m) * (1 - shadow * lighting_.sky());
+    return ThroughAir(colour * light, distance_m);
 }
 
-double World::DistanceTo(const Vector3d& eye_world, const Vector3d& direction) const {
+double World::DistanceTo(const Vector3d& eye_world, const Moment& moment,
+                         const Vector3d& direction) const {
     Surroundings around;
-    Look(eye_world, 0, around);
+    Look(eye_world, moment, 0, around);
     std::vector<std::uint32_t> all(around.solids.size());
     std::iota(all.begin(), all.end(), 0U);
     return Cast(around, all, direction.cast<float>()).distance_m;
