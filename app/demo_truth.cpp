@@ -77,8 +77,8 @@ void TruthMeter::ObserveSeam(algo::Overlap overlap, int frame, const ShownPanora
         for (int s = 0; s < map.cameras(); ++s) {
             const algo::ComposedMap::Corner& corner = map.corner(s, row, col);
             if (map.unit_of(s) != Unit::kTractor || corner.weight <= 0.1F) continue;
-            const auto point =
-                sight_.rig().WorldPointAt(map.camera_of(s), frame, Vector2d(corner.x, corner.y));
+            const auto point = sight_.WorldPointAt(Unit::kTractor, map.camera_of(s), frame,
+                                                   Vector2d(corner.x, corner.y));
             if (!point) continue;
             const Sighting other = sight_.Find(Unit::kTrailer, frame, point->p_world_m,
                                                TruthSight::Occlusion::kTested, *shown.composition);

@@ -125,8 +125,8 @@ void TruthOverlap::ObserveCorner(const ShownPanorama& shown, const ComposedMap& 
     const int frame = static_cast<int>(shown.picture.header.sequence);
     if (camera < 0 || (shown.cameras_missing >> camera & 1U) != 0) return;
     const ComposedMap::Corner& corner = map.corner(camera, row, col);
-    const auto point = sight_.rig().WorldPointAt(sight_.RigCamera(Unit::kTractor, camera), frame,
-                                                 Vector2d(corner.x, corner.y));
+    const auto point =
+        sight_.WorldPointAt(Unit::kTractor, camera, frame, Vector2d(corner.x, corner.y));
     if (!point) return;
     const Sighting other = sight_.Find(Unit::kTrailer, frame, point->p_world_m,
                                        TruthSight::Occlusion::kTested, *shown.composition);

@@ -26,7 +26,7 @@ struct OverlapSample {
 /// the true misalignments of the same frame best would leave of them.
 class TruthOverlap {
  public:
-    explicit TruthOverlap(const TruthSight& sight) : sight_(sight) {}
+    explicit TruthOverlap(TruthSight& sight) : sight_(sight) {}
 
     /// Rays into the scene are dear: call it for some of the frames.
     void Observe(const ShownPanorama& shown, const algo::ComposedMap& map);
@@ -39,7 +39,7 @@ class TruthOverlap {
     void ObserveCorner(const ShownPanorama& shown, const algo::ComposedMap& map, int row, int col);
     void AskOracle(std::size_t first);
 
-    const TruthSight& sight_;
+    TruthSight& sight_;
     std::vector<OverlapSample> samples_;
 };
 

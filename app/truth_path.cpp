@@ -37,7 +37,7 @@ double LargestSecondDifference(const std::vector<Vector2d>& path) {
 
 }  // namespace
 
-TruthPath::TruthPath(const TruthSight& sight, double rate_hz) : sight_(sight), rate_hz_(rate_hz) {
+TruthPath::TruthPath(TruthSight& sight, double rate_hz) : sight_(sight), rate_hz_(rate_hz) {
     for (std::size_t i = 0; i < kLandmarks; ++i) {
         const double azimuth = 2 * std::numbers::pi * static_cast<double>(i) / kLandmarks;
         const double elevation = static_cast<double>(i % 3) * 0.08;  // horizon and above

@@ -15,7 +15,7 @@ class TruthPath {
     /// Vibration of a vehicle on its springs and tyres; steering is slower.
     static constexpr FrequencyBand kShake{1, 15};
 
-    TruthPath(const TruthSight& sight, double rate_hz);
+    TruthPath(TruthSight& sight, double rate_hz);
 
     void Observe(int frame, const algo::Composition& composition);
 
@@ -46,7 +46,7 @@ class TruthPath {
     void Extend(const Sighting& sighting, const algo::Projection& view, Segment& segment) const;
     void AddTo(Shake& shake, const Segment& segment) const;
 
-    const TruthSight& sight_;
+    TruthSight& sight_;
     double rate_hz_;
     std::array<Eigen::Vector3d, kLandmarks> landmarks_;
     algo::PerUnit<std::array<Segment, kLandmarks>> open_;

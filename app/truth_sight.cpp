@@ -3,6 +3,7 @@
 namespace hitchview::app {
 
 using algo::Unit;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 int TruthSight::RigCamera(Unit unit, int camera) const {
@@ -35,18 +36,32 @@ void TruthSight::Place(Unit unit, const algo::Composition& composition, Sighting
 }
 
 Sighting TruthSight::Find(Unit unit, int frame, const Vector3d& p_world_m, Occlusion occlusion,
-                          const algo::Composition& composition) const {
+                          const algo::Composition& composition) {
     Sighting best;
     for (int i = 0; i < geometry_.units[unit]->cameras(); ++i) {
         const Sighting sighting = Locate(unit, i, frame, p_world_m);
         if (sighting.share > best.share) best = sighting;
     }
-    const bool hidden =
-        best.camera >= 0 && occlusion == Occlusion::kTested &&
-        !rig_.ProjectWorldPoint(RigCamera(unit, best.camera), frame, p_world_m, Occlusion::kTested);
+    const bool hidden = best.camera >= 0 && occlusion == Occlusion::kTested &&
+                        !OutlookOf(RigCamera(unit, best.camera), frame).IsFreeTo(p_world_m);
     if (hidden) return {};
     Place(unit, composition, best);
     return best;
+}
+
+const drivers::Outlook& TruthSight::OutlookOf(int rig_camera, int frame) {
+    if (frame != outlook_frame_) outlooks_ = {};
+    outlook_frame_ = frame;
+    auto& outlook = outlooks_[static_cast<std::size_t>(rig_camera)];
+    if (!outlook) outlook = rig_.OutlookOf(rig_camera, frame);
+    return *outlook;
+}
+
+std::optional<drivers::SimulatedRig::SeenPoint> TruthSight::WorldPointAt(Unit unit, int camera,
+                                                                         int frame,
+                                                                         const Vector2d& pixel) {
+    const int rig_camera = RigCamera(unit, camera);
+    return rig_.WorldPointAt(rig_camera, frame, pixel, OutlookOf(rig_camera, frame));
 }
 
 Sighting TruthSight::Through(Unit unit, int camera, int frame, const Vector3d& p_world_m,
