@@ -7,6 +7,7 @@
 #include "drivers/replay_camera.hpp"
 #include "drivers/simulated_camera.hpp"
 #include "drivers/simulated_can_bus.hpp"
+#include "drivers/simulated_scenario.hpp"
 #include "drivers/steady_clock.hpp"
 
 namespace hitchview::app {
@@ -30,18 +31,31 @@ drivers::DriveProfile Profile(SimulationConfig::Profile profile) {
     return drivers::DriveProfile::kStraight;
 }
 
-drivers::SimulationOptions ToOptions(const SimulationConfig& config, hal::Instant period) {
-    drivers::SimulationOptions options;
-    options.seed = config.seed;
-    options.frames = config.frames;
+/// A course or speed that is given stands in place of the scenario's own.
+void ApplyDrive(const SimulationConfig& config, drivers::SimulationOptions& options) {
+    if (config.profile) {
+        options.profile = Profile(*config.profile);
+        options.hitch_angle.clear();
+    }
+    if (config.speed_mps) {
+        options.speed_mps = *config.speed_mps;
+        options.speed.clear();
+    }
+}
+
+drivers::SimulationOptions Overridden(drivers::SimulationOptions options,
+                                      const SimulationConfig& config, hal::Instant period) {
+    options.seed = config.seed.value_or(options.seed);
+    options.frames = config.frames.value_or(options.frames);
     options.period = period;
-    options.width_px = config.camera_size_px.width_px;
-    options.height_px = config.camera_size_px.height_px;
-    options.speed_mps = config.speed_mps;
-    options.profile = Profile(config.profile);
-    options.noise_sigma = config.noise;
+    if (config.camera_size_px) {
+        options.width_px = config.camera_size_px->width_px;
+        options.height_px = config.camera_size_px->height_px;
+    }
+    ApplyDrive(config, options);
+    options.noise_sigma = config.noise.value_or(options.noise_sigma);
     for (const algo::Unit unit : algo::kUnits) {
-        options.shake[unit].scale = config.shake[unit];
+        options.shake[unit].scale = config.shake[unit].value_or(options.shake[unit].scale);
     }
     return options;
 }
@@ -83,8 +97,14 @@ hal::Checked<hal::Done> Board::OpenSimulation(const RigConfig& config) {
         }
     }
     if (!needed) return hal::Done{};
+    const std::string& name = config.simulation.scenario;
+    const drivers::Scenario* scenario = drivers::FindScenario(name);
+    if (scenario == nullptr) {
+        return config.file.string() + ": simulation.scenario is " + name + ", must be one of " +
+               drivers::ScenarioNames();
+    }
     auto rig = drivers::SimulatedRig::Create(
-        ToOptions(config.simulation, config.period.value_or(kDefaultPeriod)));
+        Overridden(scenario->options, config.simulation, config.period.value_or(kDefaultPeriod)));
     if (!rig) return config.file.string() + ": simulation: " + rig.error();
     simulation_ = std::move(*rig);
     return hal::Done{};

@@ -50,17 +50,18 @@ struct UnitConfig {
     std::vector<CameraConfig> cameras{};  ///< [1, 8]; empty: the rig has no such unit
 };
 
-/// The drive that simulated cameras see.
+/// The drive that simulated cameras see. What is not given is the scenario's.
 struct SimulationConfig {
     enum class Profile { kStraight, kSlalom, kTurnLeft, kTurnRight };
 
-    std::uint32_t seed = 1;
-    int frames = 300;  ///< [1, 36000]
-    Profile profile = Profile::kSlalom;
-    Size camera_size_px{1280, 720};             ///< even, [64, 4096]; landscape
-    double speed_mps = 8.0;                     ///< [0, 30]
-    algo::PerUnit<double> shake{{{1.0, 1.0}}};  ///< share of the usual vibration. [0, 5]
-    double noise = 1.0;                         ///< standard deviation, grey levels. [0, 50]
+    std::string scenario = "slalom";  ///< which there are, the simulation knows
+    std::optional<std::uint32_t> seed{};
+    std::optional<int> frames{};  ///< [1, 36000]
+    std::optional<Profile> profile{};
+    std::optional<Size> camera_size_px{};          ///< even, [64, 4096]; landscape
+    std::optional<double> speed_mps{};             ///< throughout. [0, 30]
+    algo::PerUnit<std::optional<double>> shake{};  ///< share of the scenario's vibration. [0, 5]
+    std::optional<double> noise{};                 ///< standard deviation, grey levels. [0, 50]
 };
 
 struct StabilizationConfig {

@@ -53,6 +53,23 @@ void ReadChannel(const YamlValue& value, std::set<std::string>& channels, std::s
     }
 }
 
+/// `allowed`: a range or choices.
+template <typename Allowed, typename T>
+void ReadOptional(const YamlValue& value, const Allowed& allowed, std::optional<T>& out) {
+    if (!value.given()) return;
+    T read{};
+    value.Read(allowed, read);
+    out = read;
+}
+
+std::optional<Size> ReadCameraSize(const YamlValue& value) {
+    if (!value.given()) return std::nullopt;
+    Size size;
+    ReadSize(value, {64, 4096, true}, {64, 4096, true}, size);
+    if (size.height_px > size.width_px) value.Refuse("at least as wide as high");
+    return size;
+}
+
 }  // namespace
 
 void ReadPath(const YamlValue& value, const ConfigContext& context, std::filesystem::path& out) {
@@ -91,21 +108,18 @@ SimulationConfig ReadSimulation(const YamlValue& value, const ConfigContext& con
         value.Refuse("absent unless a camera has the source {simulated: true}");
     }
     YamlMap map = value.Map();
-    map["seed"].Read(Range<std::uint32_t>{0, UINT32_MAX}, simulation.seed);
-    map["frames"].Read(Range<int>{1, 36000}, simulation.frames);
-    map["profile"].Read(kProfiles, simulation.profile);
-    const YamlValue size = map["camera_size_px"];
-    ReadSize(size, {64, 4096, true}, {64, 4096, true}, simulation.camera_size_px);
-    if (simulation.camera_size_px.height_px > simulation.camera_size_px.width_px) {
-        size.Refuse("at least as wide as high");
-    }
-    map["speed_mps"].Read({0, 30}, simulation.speed_mps);
+    map["scenario"].Read(simulation.scenario);
+    ReadOptional(map["seed"], Range<std::uint32_t>{0, UINT32_MAX}, simulation.seed);
+    ReadOptional(map["frames"], Range<int>{1, 36000}, simulation.frames);
+    ReadOptional(map["profile"], kProfiles, simulation.profile);
+    simulation.camera_size_px = ReadCameraSize(map["camera_size_px"]);
+    ReadOptional(map["speed_mps"], Range<double>{0, 30}, simulation.speed_mps);
     YamlMap shake = map["shake"].Map();
     for (const algo::Unit unit : algo::kUnits) {
-        shake[algo::ToString(unit)].Read({0, 5}, simulation.shake[unit]);
+        ReadOptional(shake[algo::ToString(unit)], Range<double>{0, 5}, simulation.shake[unit]);
     }
     shake.Finish();
-    map["noise"].Read({0, 50}, simulation.noise);
+    ReadOptional(map["noise"], Range<double>{0, 50}, simulation.noise);
     map.Finish();
     return simulation;
 }

@@ -29,6 +29,29 @@ std::string FrameName(int frame) {
     return name;
 }
 
+void Describe(const drivers::Script& script, std::ostream& text) {
+    for (const drivers::Key& key : script) text << ' ' << key.time_s << ':' << key.value;
+    text << ';';
+}
+
+void Describe(const drivers::SceneOptions& scene, std::ostream& text) {
+    text << ", scene " << static_cast<int>(scene.ground) << ' ' << scene.density << ' '
+         << scene.visibility_m << ' ' << scene.overcast << ' ' << scene.night << ' '
+         << scene.snowflakes;
+    if (scene.tunnel) text << ", tunnel " << scene.tunnel->from_m << ' ' << scene.tunnel->to_m;
+    for (const auto& truck : scene.trucks)
+        text << ", truck " << truck.start_m << ' ' << truck.across_m << ' ' << truck.speed_mps;
+}
+
+void Describe(const drivers::SensorOptions& sensor, std::ostream& text) {
+    text << ", gain " << sensor.gain << ' ' << sensor.auto_exposure;
+    for (const auto& step : sensor.gain_steps)
+        text << ", step " << step.camera << ' ' << step.first_frame << ' ' << step.factor;
+    for (const auto& outage : sensor.outages)
+        text << ", outage " << outage.camera << ' ' << outage.first_frame << ' '
+             << outage.end_frame;
+}
+
 /// Everything that the recording depends on, to tell whether one on disk can be used again.
 std::string Describe(const SimulatedRig& rig) {
     const drivers::SimulationOptions& o = rig.options();
@@ -43,6 +66,11 @@ std::string Describe(const SimulatedRig& rig) {
         text << ' ' << s.roll_pitch_rad << ' ' << s.yaw_rad << ' ' << s.translation_m << ' '
              << s.lowest_hz << ' ' << s.highest_hz << ' ' << s.scale;
     }
+    text << ", scripts";
+    Describe(o.speed, text);
+    Describe(o.hitch_angle, text);
+    Describe(o.scene, text);
+    Describe(o.sensor, text);
     text << ", quality " << kQuality << '\n';
     return text.str();
 }
@@ -112,7 +140,10 @@ class Recorder {
           i420_(hal::FrameBytes(format_)),
           encoder_(format_, {.budget_bytes = kMaxPictureBytes, .highest_quality = kQuality}) {}
 
+    /// A picture that the camera does not deliver becomes an empty file, which is a damaged one.
     bool Record(int camera, int frame) {
+        if (!rig_.CameraPresent(camera, frame))
+            return WriteFile(recording_.picture(camera, frame), "");
         rig_.Render(camera, frame, workspace_, nv12_);
         SplitChroma(format_, nv12_, i420_);
         const auto jpeg = encoder_.Encode({format_, {}, hal::PackedPlanes(format_, i420_.data())});

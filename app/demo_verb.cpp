@@ -13,6 +13,7 @@
 #include "app/program.hpp"
 #include "app/report.hpp"
 #include "app/run_loop.hpp"
+#include "drivers/simulated_scenario.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -28,12 +29,18 @@ int Fail(const std::string& why) {
 }
 
 hal::Checked<std::unique_ptr<SimulatedRig>> MakeDrive(const DemoOptions& options) {
-    drivers::SimulationOptions simulation;
+    drivers::SimulationOptions simulation{.speed_mps = 4, .curvature_per_m = 0.12};
+    if (!options.scenario.empty()) {
+        const drivers::Scenario* scenario = drivers::FindScenario(options.scenario);
+        if (scenario == nullptr) {
+            return "--scenario: " + options.scenario + " is none, must be one of " +
+                   drivers::ScenarioNames();
+        }
+        simulation = scenario->options;
+    }
     simulation.frames = options.frames;
     simulation.width_px = options.camera_width_px;
     simulation.height_px = options.camera_width_px * 9 / 16;
-    simulation.speed_mps = 4;
-    simulation.curvature_per_m = 0.12;
     simulation.render_threads = 1;
     return SimulatedRig::Create(simulation);
 }

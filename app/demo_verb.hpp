@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <string>
 
 namespace hitchview::app {
 
@@ -10,6 +11,7 @@ struct DemoOptions {
     std::filesystem::path out = "out/demo";  ///< recording, rig file, videos, picture, report
     int frames = 210;                        ///< frame sets of the drive, 30 per second. [30, 3000]
     int camera_width_px = 1280;  ///< of the simulated cameras, 16:9. 320, 640, 960, 1280 or 1920
+    std::string scenario{};      ///< of the drive; empty: a slow slalom through narrow curves
     int workers = 2;             ///< [1, 16]
     bool realtime = false;       ///< one frame set per period; late ones are dropped
 };

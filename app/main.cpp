@@ -89,6 +89,8 @@ int main(int argc, char** argv) {
     demo_verb.add_option("--frames", demo.frames, "frame sets, 30 per second")
         ->check(CLI::Range(30, 3000))
         ->capture_default_str();
+    demo_verb.add_option("--scenario", demo.scenario,
+                         "drive by name, see docs/rig.example.yaml; otherwise a slow slalom");
     demo_verb
         .add_option("--camera-width", demo.camera_width_px,
                     "width of the simulated cameras, 16:9; 640 is enough for the default panorama "

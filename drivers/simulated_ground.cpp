@@ -149,7 +149,7 @@ Colour Ground::UnderSnow(const Colour& ground, const Patch& patch, const OnRoad&
     }
     const float worn = std::min(tracks * (0.5F + 0.4F * grain), 0.9F);
     const Colour snow = FromRgb(216, 221, 228) * (0.66F + 0.14F * grain + 0.2F * drift);
-    return Mix(ground, snow, 0.93F * (1 - worn));
+    return Mix(ground, snow, 0.97F * (1 - worn));
 }
 
 Colour Ground::ColourOf(const Patch& patch) const {

@@ -9,8 +9,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr float kMoon = 0.05F;
-constexpr float kTunnelFloor = 0.06F;  // light deep inside, between the lamps
+constexpr float kMoon = 0.09F;
+constexpr float kTunnelFloor = 0.1F;  // light deep inside, between the lamps
 constexpr double kTunnelDaylight_m = 3.5;
 constexpr double kSlack = 0.05;  // the walls themselves are inside
 
@@ -26,9 +26,9 @@ struct Lamp {
 
 constexpr float kQuarterTurn = 1.5708F;
 const Lamp kHeadlight{{2, 0, 0.3F}, 0, 1.1F, 14, 0.5F, 0.09F};
-const std::array kWorkLamps{Lamp{{-2.5F, 0, 1.2F}, 2 * kQuarterTurn, 0.7F, 6, 1.2F, 0.9F},
-                            Lamp{{0, 0.7F, 1.2F}, kQuarterTurn, 0.6F, 5, 1.3F, 0.9F},
-                            Lamp{{0, -0.7F, 1.2F}, -kQuarterTurn, 0.6F, 5, 1.3F, 0.9F}};
+const std::array kWorkLamps{Lamp{{-2.5F, 0, 1.2F}, 2 * kQuarterTurn, 0.7F, 8, 1.4F, 0.9F},
+                            Lamp{{0, 0.7F, 1.2F}, kQuarterTurn, 0.6F, 9, 1.6F, 0.9F},
+                            Lamp{{0, -0.7F, 1.2F}, -kQuarterTurn, 0.6F, 9, 1.6F, 0.9F}};
 
 float Square(float x) {
     return x * x;
@@ -48,11 +48,12 @@ float LampAt(const Lamp& lamp, const Vector3f& p_unit) {
     return lamp.level * beam / (1 + to_p.squaredNorm() / Square(lamp.reach_m));
 }
 
-/// Of the nearest of lamps in a row; 1 right below it.
+/// Of the nearest of lamps in a row; 1 right below it. Broad lamps: even beside them it is not
+/// dark.
 double LampRow(double along_m, double aside_m, double below_m, double spacing_m) {
     const double to_nearest_m = std::remainder(along_m, spacing_m);
     const double square = to_nearest_m * to_nearest_m + aside_m * aside_m;
-    const double height = std::max(below_m, 0.5);
+    const double height = std::max(below_m, 2.0);
     return height * height / (height * height + square);
 }
 
@@ -73,11 +74,14 @@ float Lighting::LevelAt(const Vector3d& p_world, const Moment& moment) const {
 }
 
 float Lighting::StreetLampsAt(const Vector3d& p_world) const {
-    using Row = StreetLampProfile;
     const RoadPoint at = road_.FromWorld(p_world.head<2>());
-    const double share =
-        LampRow(at.along_m, at.across_m - Row::kAcross, Row::kHeight - p_world.z(), Row::kSpacing);
-    return 0.75F * static_cast<float>(share * std::sqrt(share));
+    double sum = 0;
+    for (const StreetLampRow& row : kStreetLampRows) {
+        const double share = LampRow(at.along_m - row.along_m, at.across_m - row.across_m,
+                                     kStreetLampHeight_m - p_world.z(), kStreetLampSpacing_m);
+        sum += share * std::sqrt(share);
+    }
+    return 0.75F * static_cast<float>(sum);
 }
 
 float Lighting::TunnelAt(const Vector3d& p_world) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 
 #include "drivers/simulated_options.hpp"
 #include "drivers/simulated_road.hpp"
@@ -21,12 +22,13 @@ struct TunnelProfile {
     static constexpr double kLampSpacing = 6;
 };
 
-/// Lamps beside the road.
-struct StreetLampProfile {
-    static constexpr double kSpacing = 24;
-    static constexpr double kAcross = -3.9;
-    static constexpr double kHeight = 6;
+/// Lamps on one side of the road: where the row starts, left of the driven lane.
+struct StreetLampRow {
+    double along_m, across_m;
 };
+inline constexpr double kStreetLampSpacing_m = 24;
+inline constexpr double kStreetLampHeight_m = 6;
+inline constexpr std::array kStreetLampRows{StreetLampRow{0, -3.9}, StreetLampRow{12, 7.4}};
 
 /// Light relative to daylight: of the vehicle's own lamps, street lamps, or in a tunnel.
 /// Thread-safe.
@@ -37,7 +39,7 @@ class Lighting {
 
     /// True if LevelAt is 1 everywhere.
     [[nodiscard]] bool plain_daylight() const { return !night_ && !tunnel_; }
-    /// Light of the sky, and share of the sunlight that throws shadows.
+    /// Light of the sky.
     [[nodiscard]] float sky() const { return night_ ? kNightSky : 1.0F; }
     [[nodiscard]] float LevelAt(const Eigen::Vector3d& p_world, const Moment& moment) const;
 

@@ -13,6 +13,8 @@ namespace {
 /// The road of a slalom is a function of x: its heading stays well below a right angle.
 constexpr double kMaxSlalomHeading_rad = 1.05;
 
+constexpr double kMostEvents = 1000;  // of one kind in a drive
+
 struct Bound {
     const char* key;
     double value;
@@ -42,6 +44,7 @@ double SlalomHeading_rad(const SimulationOptions& o) {
 }
 
 void AddScript(std::vector<Bound>& bounds, const char* key, const Script& script, double highest) {
+    bounds.push_back({"number of keys", static_cast<double>(script.size()), 0, kMostEvents});
     double last_s = 0;
     for (const Key& at : script) {
         bounds.push_back({"time_s of a key, ascending,", at.time_s, last_s, 1e5});
@@ -72,6 +75,10 @@ void AddScene(std::vector<Bound>& bounds, const SimulationOptions& o) {
 void AddSensor(std::vector<Bound>& bounds, const SensorOptions& sensor) {
     constexpr double kLastCamera = 7;
     bounds.push_back({"sensor.gain", sensor.gain, 0.1, 10});
+    bounds.push_back(
+        {"number of gain_steps", static_cast<double>(sensor.gain_steps.size()), 0, kMostEvents});
+    bounds.push_back(
+        {"number of outages", static_cast<double>(sensor.outages.size()), 0, kMostEvents});
     for (const SensorOptions::GainStep& step : sensor.gain_steps) {
         bounds.push_back({"sensor.gain_steps.camera", 1.0 * step.camera, 0, kLastCamera});
         bounds.push_back({"sensor.gain_steps.first_frame", 1.0 * step.first_frame, 0, 36000});

@@ -49,13 +49,13 @@ struct SceneOptions {
     };
 
     Ground ground = Ground::kRoad;
-    double density = 1;            ///< share of the things along the road that stand there
-    double visibility_m = 900;     ///< distance at which the air hides half
-    double overcast = 0;           ///< share of sky and hills that the air hides
-    bool night = false;            ///< lit by headlights, work lamps and street lamps alone
-    int snowflakes = 0;            ///< within three metres of each camera
-    std::optional<Tunnel> tunnel;  ///< on a straight road only
-    std::vector<Truck> trucks;
+    double density = 1;              ///< share of the things along the road that stand there
+    double visibility_m = 900;       ///< distance at which the air hides half
+    double overcast = 0;             ///< share of sky and hills that the air hides
+    bool night = false;              ///< lit by headlights, work lamps and street lamps alone
+    int snowflakes = 0;              ///< within three metres of each camera
+    std::optional<Tunnel> tunnel{};  ///< on a straight road only
+    std::vector<Truck> trucks{};
 };
 
 /// What the cameras do to the light, beside the spread of their gains.
@@ -75,8 +75,8 @@ struct SensorOptions {
 
     double gain = 1;             ///< of all cameras
     bool auto_exposure = false;  ///< follows the light around the camera, half a second behind
-    std::vector<GainStep> gain_steps;  ///< first frames ascending
-    std::vector<Outage> outages;
+    std::vector<GainStep> gain_steps{};  ///< first frames ascending
+    std::vector<Outage> outages{};
 };
 
 /// Everything that decides what the simulated cameras and CAN bus deliver. Equal options, equal
@@ -91,8 +91,8 @@ struct SimulationOptions {
     DriveProfile profile = DriveProfile::kSlalom;
     double curvature_per_m = 0.08;  ///< peak of the slalom, constant in a turn
     double slalom_period_s = 6;
-    Script speed;        ///< m/s, negative backwards; empty: `speed_mps` throughout
-    Script hitch_angle;  ///< rad, positive left; empty: pulled. See Motion.
+    Script speed{};        ///< m/s, negative backwards; empty: `speed_mps` throughout
+    Script hitch_angle{};  ///< rad, positive left; empty: pulled. See Motion.
     algo::PerUnit<ShakeOptions> shake{
         {ShakeOptions{}, ShakeOptions{.translation_m = 0.016, .lowest_hz = 4, .highest_hz = 12}}};
     double gain_spread = 0.04;  ///< exposure gains of the cameras lie in 1 +- this

@@ -273,6 +273,7 @@ class Town {
 
     std::vector<Solid> Take() {
         std::vector<Solid> solids = builder_.Take();
+        if (scene_.ground == SceneOptions::Ground::kSnow) CoverWithSnow(solids);
         if (scene_.tunnel) AppendTunnel(*scene_.tunnel, solids);
         if (scene_.night) AppendStreetLamps(road_, first_m_, last_m_, solids);
         return solids;

@@ -112,18 +112,14 @@ Moment SimulatedRig::MomentOf(int frame) const {
     return moment;
 }
 
-/// Mean on the ground around a place a little ahead of the camera.
+/// Mean from the camera to three metres before it.
 double SimulatedRig::LightAround(int camera_index, int frame) const {
-    constexpr double kAhead_m = 7;
     constexpr int kPlaces = 4;
-    constexpr double kApart_m = 1.3;
     const Isometry3d T_world_camera = CameraPoseAt(camera_index, frame);
     const Moment moment = MomentOf(frame);
     double sum = 0;
     for (int i = 0; i < kPlaces; ++i) {
-        Vector3d place = T_world_camera.translation();
-        place.x() += kAhead_m * T_world_camera.linear()(0, 2) + kApart_m * i;
-        place.z() = 0;
+        const Vector3d place = T_world_camera * Vector3d{0, 0, 1.0 * i};
         sum += world_.lighting().LevelAt(place, moment);
     }
     return sum / kPlaces;

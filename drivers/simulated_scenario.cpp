@@ -68,7 +68,7 @@ SimulationOptions OvertakingTruck() {
 SimulationOptions Night() {
     SimulationOptions options = Straight();
     options.scene.night = true;
-    options.sensor.gain = 1.6;
+    options.sensor.gain = 2;
     options.noise_sigma = 7;
     return options;
 }
@@ -78,8 +78,8 @@ SimulationOptions Snow() {
     options.speed_mps = 5;
     options.scene.ground = SceneOptions::Ground::kSnow;
     options.scene.visibility_m = 180;
-    options.scene.overcast = 0.75;
-    options.scene.snowflakes = 1500;
+    options.scene.overcast = 0.92;
+    options.scene.snowflakes = 5000;
     return options;
 }
 
@@ -146,6 +146,15 @@ const Scenario* FindScenario(std::string_view name) {
     const auto found = std::find_if(scenarios.begin(), scenarios.end(),
                                     [name](const Scenario& s) { return s.name == name; });
     return found == scenarios.end() ? nullptr : &*found;
+}
+
+std::string ScenarioNames() {
+    std::string names;
+    for (const Scenario& scenario : Scenarios()) {
+        if (!names.empty()) names += ", ";
+        names += scenario.name;
+    }
+    return names;
 }
 
 }  // namespace hitchview::drivers

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "drivers/simulated_options.hpp"
@@ -20,5 +21,7 @@ std::span<const Scenario> Scenarios();
 
 /// Null for a name that there is not.
 const Scenario* FindScenario(std::string_view name);
+/// Every name, with commas between them, for messages.
+std::string ScenarioNames();
 
 }  // namespace hitchview::drivers

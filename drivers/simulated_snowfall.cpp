@@ -73,7 +73,7 @@ Snowfall::Snowfall(int flakes, std::uint32_t seed) {
                                dice.Between(0, kCell_m)};
         const Vector3d velocity_mps{dice.Between(-0.5, 0.5), dice.Between(-0.5, 0.5),
                                     dice.Between(-1.6, -0.9)};
-        flakes_.push_back({start_m, velocity_mps, dice.Between(0.0015, 0.0045)});
+        flakes_.push_back({start_m, velocity_mps, dice.Between(0.002, 0.006)});
     }
 }
 

@@ -61,17 +61,32 @@ void AppendTunnel(const SceneOptions::Tunnel& tunnel, std::vector<Solid>& out) {
 }
 
 void AppendStreetLamps(const Road& road, double first_m, double last_m, std::vector<Solid>& out) {
-    using Row = StreetLampProfile;
+    constexpr double kArm_m = 0.6;
     const Coat metal = Repeating(Paint::kMetal, 2, 1);
-    for (double along_m = std::ceil(first_m / Row::kSpacing) * Row::kSpacing; along_m < last_m;
-         along_m += Row::kSpacing) {
-        const Eigen::Vector2d post = road.ToWorld(along_m, Row::kAcross - 0.6);
-        const Eigen::Vector2d lamp = road.ToWorld(along_m, Row::kAcross);
-        out.push_back({.shape = Shape::kCylinder,
-                       .centre_m = {post.x(), post.y(), Row::kHeight / 2},
-                       .half_m = {0.08F, 0.08F, Row::kHeight / 2},
-                       .coats = {metal, metal, metal}});
-        out.push_back(GlowingBox({lamp.x(), lamp.y(), Row::kHeight}, {0.2F, 0.5F, 0.08F}));
+    for (const StreetLampRow& row : kStreetLampRows) {
+        const double post_across_m = row.across_m + std::copysign(kArm_m, row.across_m);
+        for (double along_m = first_m - std::remainder(first_m, kStreetLampSpacing_m) + row.along_m;
+             along_m < last_m; along_m += kStreetLampSpacing_m) {
+            const Eigen::Vector2d post = road.ToWorld(along_m, post_across_m);
+            const Eigen::Vector2d lamp = road.ToWorld(along_m, row.across_m);
+            out.push_back({.shape = Shape::kCylinder,
+                           .centre_m = {post.x(), post.y(), kStreetLampHeight_m / 2},
+                           .half_m = {0.08F, 0.08F, kStreetLampHeight_m / 2},
+                           .coats = {metal, metal, metal}});
+            out.push_back(
+                GlowingBox({lamp.x(), lamp.y(), kStreetLampHeight_m}, {0.35F, 0.35F, 0.08F}));
+        }
+    }
+}
+
+void CoverWithSnow(std::vector<Solid>& solids) {
+    const Coat snow = Repeating(Paint::kVariation, 9, 1.45F);
+    for (Solid& solid : solids) {
+        solid.coats[2] = snow;
+        Coat& crown = solid.coats[0];
+        if (crown.paint != Paint::kLeaves) continue;
+        crown.paint = Paint::kGravel;
+        crown.tint = crown.tint * 1.5F;
     }
 }
 

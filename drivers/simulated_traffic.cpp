@@ -1,5 +1,6 @@
 #include "drivers/simulated_traffic.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "drivers/simulated_noise.hpp"
@@ -12,12 +13,13 @@ using Eigen::Vector3f;
 
 constexpr double kHalfLength_m = Traffic::kTruckLength_m / 2;
 constexpr float kHalfWidth_m = 1.25F;
+constexpr float kPicture_m = 6.2F;
 
-/// A box with one picture over each side.
+/// A box with a picture over each side, repeated along a long one.
 Solid Panel(const Vector3d& centre_m, const Vector3f& half_m, const std::array<Paint, 2>& paints,
             const Colour& tint) {
     const auto coat = [&](Paint paint, float width_m, float height_m) {
-        return Coat{paint, 2 * width_m, 2 * height_m, 0.5F, 0, tint};
+        return Coat{paint, std::min(2 * width_m, kPicture_m), 2 * height_m, 0.5F, 0, tint};
     };
     return {
         .shape = Shape::kBox,

@@ -46,6 +46,7 @@ World::World(const SimulationOptions& options, std::span<const Eigen::Vector2d> 
       solids_(PlaceSolids(road_, {Route_m(options), options.scene, driven}, Hash(options.seed, 4))),
       haze_half_m_(static_cast<float>(options.scene.visibility_m)),
       overcast_(static_cast<float>(options.scene.overcast)),
+      sunlight_(lighting_.sky() * (1 - 0.8F * overcast_)),
       air_(kHaze * lighting_.sky()) {}
 
 void World::Look(const Vector3d& eye_world, const Moment& moment, float smallest_rad,
@@ -127,7 +128,7 @@ Colour World::GroundColour(const Surroundings& around, std::span<const std::uint
         if (solid.nearest_m > distance_m) break;
         if (solid.shape == Shape::kShadow) shadow = std::max(shadow, ShadowAt(solid, p_m));
     }
-    const float light = LightAt(around, p_m) * (1 - shadow * lighting_.sky());
+    const float light = LightAt(around, p_m) * (1 - shadow * sunlight_);
     return ThroughAir(colour * light, distance_m);
 }
 

@@ -81,7 +81,8 @@ class World {
     std::vector<Solid> solids_;
     float haze_half_m_;
     float overcast_;
-    Colour air_;  // what far things fade into
+    float sunlight_;  // share that throws shadows
+    Colour air_;      // what far things fade into
 };
 
 }  // namespace hitchview::drivers

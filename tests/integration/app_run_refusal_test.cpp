@@ -76,6 +76,14 @@ TEST_F(RefusalTest, ASimulatedCameraOfTheOtherUnitIsNamed) {
     ExpectRefused(Ring(units, "{frames: 3}"), 3, "cameras.rear.unit is trailer, must be tractor");
 }
 
+TEST_F(RefusalTest, AScenarioThatThereIsNotIsNamedWithThoseThatThereAre) {
+    tests::WriteSimulatedCalibration(folder_, 320, 180);
+    const auto units =
+        tests::SimulatedUnits([](const std::string&) { return "{simulated: true}"; });
+    ExpectRefused(Ring(units, "{scenario: fog}"), 3,
+                  "simulation.scenario is fog, must be one of straight, vibration, turn_left_60");
+}
+
 TEST_F(RefusalTest, ASimulatedCameraThatTheRigDoesNotHaveIsNamed) {
     const std::string rig =
         tests::WriteText(folder_ / "rig.yaml",

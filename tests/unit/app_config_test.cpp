@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "app/config.hpp"
+#include "drivers/simulated_scenario.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace hitchview::app {
@@ -296,10 +297,20 @@ TEST(RigExampleTest, LoadsAndShowsTheDefaults) {
     EXPECT_EQ(rig.canvas.ground_m, defaults.canvas.ground_m);
     EXPECT_EQ(rig.stabilization.cropping, defaults.stabilization.cropping);
     EXPECT_EQ(rig.stitching.kappa, defaults.stitching.kappa);
-    EXPECT_EQ(rig.simulation.frames, defaults.simulation.frames);
-    EXPECT_EQ(rig.simulation.profile, defaults.simulation.profile);
-    EXPECT_EQ(rig.simulation.speed_mps, defaults.simulation.speed_mps);
-    EXPECT_EQ(rig.simulation.noise, defaults.simulation.noise);
+    EXPECT_EQ(rig.simulation.scenario, defaults.simulation.scenario);
+    const drivers::SimulationOptions& simulation =
+        drivers::FindScenario(defaults.simulation.scenario)->options;
+    EXPECT_EQ(rig.simulation.frames, simulation.frames);
+    EXPECT_EQ(rig.simulation.profile, SimulationConfig::Profile::kSlalom);
+    EXPECT_EQ(rig.simulation.camera_size_px->width_px, simulation.width_px);
+    EXPECT_EQ(rig.simulation.speed_mps, simulation.speed_mps);
+    EXPECT_EQ(rig.simulation.noise, simulation.noise_sigma);
+    for (const drivers::Scenario& scenario : drivers::Scenarios()) {
+        EXPECT_NE(test_support::FileText(HITCHVIEW_SOURCE_DIR "/docs/rig.example.yaml")
+                      .find(scenario.name),
+                  std::string::npos)
+            << scenario.name;
+    }
     EXPECT_EQ(rig.workers, defaults.workers);
     EXPECT_EQ(rig.publish.url, defaults.publish.url);
     EXPECT_EQ(rig.publish.jpeg_quality, defaults.publish.jpeg_quality);
