@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
+#include "algo/articulation.hpp"
 #include "algo/mesh.hpp"
 #include "algo/projection.hpp"
 #include "algo/trailer_placement.hpp"
@@ -21,6 +23,8 @@ struct Composition {
     PerOverlap<int> matches;
     PerUnit<int> features;
     PerUnit<PoseOffset> stabilization;  ///< S of each unit, for reports
+    /// Ring only; for reports. Empty while it is not known.
+    std::optional<Articulation> articulation;
 };
 
 /// Where the composition shows a ray of `unit`'s view, canvas px. Inverts what the composed map

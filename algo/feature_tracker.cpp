@@ -14,24 +14,34 @@ FeatureTracker::FeatureTracker(int width_px, int height_px, const FeatureTracker
 
 void FeatureTracker::Follow(const GreyPyramid& early, const GreyPyramid& late,
                             const cv::Mat1b& mask, Tracks& tracks) {
-    FollowFeatures(early, late, mask, tracks);
+    FollowFeatures(early, late, mask, 0, tracks);
+    const auto found = static_cast<float>(tracks.count());
+    if (found < options_.blurred_share * static_cast<float>(features_.count())) {
+        FollowFeatures(early, late, mask, std::min(options_.blurred_level, late.levels() - 1),
+                       tracks);
+    }
     features_.clear();
     for (const Track& track : tracks) features_.push_back(track.late_px);
     Replenish(late.level(0), mask);
 }
 
 void FeatureTracker::FollowFeatures(const GreyPyramid& early, const GreyPyramid& late,
-                                    const cv::Mat1b& mask, Tracks& tracks) {
+                                    const cv::Mat1b& mask, int finest_level, Tracks& tracks) const {
     tracks.clear();
+    PatchAlignmentOptions alignment = options_.alignment;
+    alignment.finest_level = finest_level;
+    const float max_round_trip_px =
+        options_.max_round_trip_px * static_cast<float>(1 << finest_level);
     for (const Vector2f& from : features_) {
-        const auto there =
-            AlignPatch(early, late, from, from, options_.coarsest_level, options_.alignment);
+        const auto there = AlignPatch(early, late, from, from,
+                                      std::max(options_.coarsest_level, finest_level), alignment);
         if (!there || there->correlation < options_.min_correlation ||
             !Allows(mask, there->position_px)) {
             continue;
         }
-        const auto back = AlignPatch(late, early, there->position_px, from, 0, options_.alignment);
-        if (!back || (back->position_px - from).norm() > options_.max_round_trip_px) continue;
+        const auto back =
+            AlignPatch(late, early, there->position_px, from, finest_level, alignment);
+        if (!back || (back->position_px - from).norm() > max_round_trip_px) continue;
         tracks.push_back({from, there->position_px});
     }
 }

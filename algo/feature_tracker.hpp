@@ -14,6 +14,8 @@ struct FeatureTrackerOptions {
     int coarsest_level = 3;          ///< pyramid level where the search starts
     float max_round_trip_px = 0.5F;  ///< forward-backward check
     float min_correlation = 0.60F;
+    float blurred_share = 0.35F;  ///< fewer features found than this: motion has blurred detail
+    int blurred_level = 2;        ///< pyramid level that is trusted then; finer ones are not
     CornerDetectorOptions corners{};
     PatchAlignmentOptions alignment{};
 };
@@ -31,7 +33,8 @@ class FeatureTracker {
     FeatureTracker(int width_px, int height_px, const FeatureTrackerOptions& options);
 
     /// Replaces `tracks` by the features of `early` found in `late`: aligned from coarse to fine,
-    /// then aligned back at full size from where they started, and kept if they return there. Then
+    /// then aligned back at full size from where they started, and kept if they return there. Where
+    /// motion has blurred one of the frames, that is done at a coarse level alone. Then
     /// fills up with new corners of `late` where `mask` is not zero. The first call after Reset
     /// gives no tracks.
     void Follow(const GreyPyramid& early, const GreyPyramid& late, const cv::Mat1b& mask,
@@ -46,7 +49,7 @@ class FeatureTracker {
 
  private:
     void FollowFeatures(const GreyPyramid& early, const GreyPyramid& late, const cv::Mat1b& mask,
-                        Tracks& tracks);
+                        int finest_level, Tracks& tracks) const;
     void Replenish(const cv::Mat1b& late, const cv::Mat1b& mask);
 
     FeatureTrackerOptions options_;

@@ -135,7 +135,7 @@ std::optional<PatchMatch> AlignPatch(const GreyPyramid& from, const GreyPyramid&
                                      int coarsest, const PatchAlignmentOptions& options) {
     Vector2f at = guess_px;
     Template t;
-    for (int l = std::min(coarsest, from.levels() - 1); l >= 0; --l) {
+    for (int l = std::min(coarsest, from.levels() - 1); l >= options.finest_level; --l) {
         const float scale = 1.0F / static_cast<float>(1 << l);
         const Vector2f centre = from_px * scale;
         Vector2f moved = at * scale;
@@ -143,12 +143,13 @@ std::optional<PatchMatch> AlignPatch(const GreyPyramid& from, const GreyPyramid&
         const bool textured = fits && MakeTemplate(from.level(l), centre, options.min_strength, t);
         if (textured && Descend(t, to.level(l), options, moved)) {
             at = moved / scale;
-        } else if (l == 0) {
+        } else if (l == options.finest_level) {
             return std::nullopt;
         }
     }
     Patch<kSide> patch;
-    ReadPatch<kSide>(to.level(0), at, patch);
+    const int finest = options.finest_level;
+    ReadPatch<kSide>(to.level(finest), at / static_cast<float>(1 << finest), patch);
     return PatchMatch{at, Correlation(t, patch, Measure(patch))};
 }
 

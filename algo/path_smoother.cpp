@@ -1,96 +1,118 @@
 #include "algo/path_smoother.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "algo/second_difference_system.hpp"
 
 namespace hitchview::algo {
 namespace {
 
+using Eigen::Vector3d;
+
 /// Share of the demand for pull that is given up per frame once the offset leaves the wall.
-constexpr double kRelease = 0.05;
+constexpr double kRelease = 0.06;
+/// The set of exceeded walls settles after two or three solves.
+constexpr int kMaxSolves = 8;
+constexpr int kTurn = 2;
 
 }  // namespace
 
-PathSmoother::PathSmoother(const PathSmootherOptions& options) : options_(options) {
-    for (int i = 0; i < kPulls; ++i) {
-        const double share = static_cast<double>(i) / (kPulls - 1);
-        taps_[static_cast<std::size_t>(i)] = Solve(
-            options.weakest_pull * std::pow(options.strongest_pull / options.weakest_pull, share));
+PathSmoother::PathSmoother(const PathSmootherOptions& options)
+    : options_(options),
+      frames_(1 + std::clamp(options.lookahead_frames, 0, kMaxLookahead) +
+              std::clamp(options.horizon_frames, 1, PathSmootherOptions::kMaxHorizon)) {}
+
+Vector3d PathSmoother::Next(const Window& window) {
+    UpdateVelocity(window);
+    Vector3d offset;
+    for (const int component : {kTurn, 0, 1}) {  // the turn takes its share of the shift's room
+        const double early = window.early_output(component);
+        GuessPath(window, component);
+        SetWall(component);
+        Plan(early, window.earlier_output(component), UpdatePull(early, component));
+        offset(component) = std::clamp(output_[0], -wall_[0], wall_[0]);
+        if (component != kTurn) continue;
+        for (std::size_t t = 0; t < turn_.size(); ++t) {
+            turn_[t] = std::min(std::abs(output_[t] - path_[t]), wall_[t]);
+        }
     }
+    return offset;
 }
 
-PathSmoother::Taps PathSmoother::Solve(double pull) const {
-    const int known = options_.lookahead_frames + 1;
-    const int n = known + options_.horizon_frames;
-    // Rows of `second` are the second differences; x_{-1} and x_{-2} go to the right side.
-    Eigen::MatrixXd second = Eigen::MatrixXd::Zero(n, n);
-    Eigen::MatrixXd fixed = Eigen::MatrixXd::Zero(n, 2);  // factors of x_{-1}, x_{-2}
-    for (int t = 0; t < n; ++t) {
-        second(t, t) = 1;
-        (t >= 1 ? second(t, t - 1) : fixed(t, 0)) += -2;
-        if (t >= 2) {
-            second(t, t - 2) = 1;
+void PathSmoother::UpdateVelocity(const Window& window) {
+    Vector3d newest = window.motion;
+    if (options_.lookahead_frames > 0) {
+        const auto last = static_cast<std::size_t>(options_.lookahead_frames - 1);
+        newest = window.ahead[last];
+        if (last > 0) newest -= window.ahead[last - 1];
+    }
+    velocity_ += options_.velocity_smoothing * (newest - velocity_);
+}
+
+double PathSmoother::UpdatePull(double early_offset, int component) {
+    const double nearness = std::abs(early_offset) / options_.wall(component);
+    const double wanted =
+        std::clamp((nearness - options_.free_share) / (1 - options_.free_share), 0.0, 1.0);
+    double& demand = demand_(component);
+    demand = std::max(wanted, demand * (1 - kRelease));
+    return options_.weakest_pull *
+           std::pow(options_.strongest_pull / options_.weakest_pull, demand);
+}
+
+void PathSmoother::GuessPath(const Window& window, int component) {
+    double velocity = velocity_(component);
+    path_[0] = 0;
+    for (int t = 1; t < frames_; ++t) {
+        const auto i = static_cast<std::size_t>(t);
+        if (t <= options_.lookahead_frames) {
+            path_[i] = window.ahead[i - 1](component);
         } else {
-            fixed(t, t == 1 ? 0 : 1) += 1;
-        }
-    }
-    const Eigen::MatrixXd normal =
-        second.transpose() * second + pull * Eigen::MatrixXd::Identity(n, n);
-    const Eigen::RowVectorXd row = normal.ldlt().solve(Eigen::VectorXd::Unit(n, 0)).transpose();
-    const Eigen::RowVectorXd outputs = -row * second.transpose() * fixed;
-
-    Taps taps{outputs(0), outputs(1), 0, {}};
-    double travelled = 0;
-    double velocity = 1;
-    double guessed = 0;
-    for (int t = 1; t < n; ++t) {
-        if (t < known - 1) {
-            taps.ahead[static_cast<std::size_t>(t - 1)] = pull * row(t);
-            continue;
-        }
-        guessed += t == known - 1 ? 0 : pull * row(t);
-        if (t >= known) {
             velocity *= options_.guess_damping;
-            travelled += velocity;
-            taps.velocity += pull * row(t) * travelled;
+            path_[i] = path_[i - 1] + velocity;
         }
     }
-    // The guess starts at the last frame seen, so that frame carries its own weight and theirs.
-    if (known > 1) {
-        taps.ahead[static_cast<std::size_t>(known - 2)] = pull * row(known - 1) + guessed;
-    }
-    return taps;
 }
 
-double PathSmoother::Apply(const Taps& taps, const Window& window, int component) const {
-    double offset = taps.early * window.early_output(component) +
-                    taps.earlier * window.earlier_output(component) +
-                    taps.velocity * velocity_(component);
-    for (int j = 0; j < options_.lookahead_frames; ++j) {
-        offset += taps.ahead[static_cast<std::size_t>(j)] *
-                  window.ahead[static_cast<std::size_t>(j)](component);
+void PathSmoother::SetWall(int component) {
+    for (int t = 0; t < frames_; ++t) {
+        const auto i = static_cast<std::size_t>(t);
+        double wall = options_.wall(component);
+        if (component != kTurn) {
+            wall = std::max(0.0, wall - options_.turn_takes_px(component) * turn_[i]);
+        }
+        wall_[i] = wall * (t <= options_.lookahead_frames ? 1 : options_.guessed_wall_share);
     }
-    return offset;
 }
 
-Eigen::Vector3d PathSmoother::Next(const Window& window) {
-    velocity_ += options_.velocity_smoothing * (window.motion - velocity_);
-    Eigen::Vector3d offset;
-    for (int c = 0; c < 3; ++c) {
-        const double wall = options_.wall(c);
-        const double nearness = std::abs(window.early_output(c)) / wall;
-        const double wanted =
-            std::clamp((nearness - options_.free_share) / (1 - options_.free_share), 0.0, 1.0);
-        demand_(c) = std::max(wanted, demand_(c) * (1 - kRelease));
-        const double at = demand_(c) * (kPulls - 1);
-        const auto i = std::min<std::size_t>(static_cast<std::size_t>(at), kPulls - 2);
-        const double share = at - static_cast<double>(i);
-        const double free =
-            (1 - share) * Apply(taps_[i], window, c) + share * Apply(taps_[i + 1], window, c);
-        offset(c) = std::clamp(free, -wall, wall);
+void PathSmoother::Plan(double early, double earlier, double pull) {
+    const auto n = static_cast<std::size_t>(frames_);
+    SecondDifferenceSystem<kMaxPlan> system;
+    Planned weight;
+    Planned target;
+    exceeded_.fill(0);
+    for (int solve = 0; solve < kMaxSolves; ++solve) {
+        for (std::size_t t = 0; t < n; ++t) {
+            const double stiffness = exceeded_[t] != 0 ? options_.wall_stiffness : 0;
+            weight[t] = pull + stiffness;
+            target[t] = path_[t] + stiffness * exceeded_[t] * wall_[t] / weight[t];
+        }
+        system.Solve(early, earlier, {weight.data(), n}, {target.data(), n}, {output_.data(), n});
+        if (!FindExceeded()) return;
     }
-    return offset;
+}
+
+/// True if the walls that the plan exceeds have changed.
+bool PathSmoother::FindExceeded() {
+    if (options_.wall_stiffness <= 0) return false;
+    bool changed = false;
+    for (std::size_t t = 0; t < static_cast<std::size_t>(frames_); ++t) {
+        const double offset = output_[t] - path_[t];
+        const int side = offset > wall_[t] ? 1 : offset < -wall_[t] ? -1 : 0;
+        changed = changed || side != exceeded_[t];
+        exceeded_[t] = side;
+    }
+    return changed;
 }
 
 void PathSmoother::Reset() {

@@ -2,8 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <span>
-#include <vector>
 
 namespace hitchview::algo {
 
@@ -11,21 +9,27 @@ inline constexpr int kMaxLookahead = 10;  ///< frames
 
 struct PathSmootherOptions {
     int lookahead_frames = 0;             ///< 0..kMaxLookahead
-    int horizon_frames = 20;              ///< beyond the frames seen, filled by the guess
-    double guess_damping = 0.85;          ///< of the velocity, per frame of the horizon
-    double velocity_smoothing = 0.15;     ///< share of the newest motion in the velocity guess
-    double weakest_pull = 1e-5;           ///< pull to the path far from the wall
-    double strongest_pull = 1.0;          ///< at the wall
+    int horizon_frames = 27;              ///< beyond the frames seen, guessed; 1..kMaxHorizon
+    double guess_damping = 0.95;          ///< of the velocity, per frame of the horizon
+    double velocity_smoothing = 1;        ///< share of the newest motion in the guess's velocity
+    double weakest_pull = 7e-6;           ///< pull to the path far from the wall
+    double strongest_pull = 0.19;         ///< at the wall
+    double free_share = 0.28;             ///< of the wall, where the pull starts to grow
     Eigen::Vector3d wall{1e9, 1e9, 1e9};  ///< bound of |offset|, per component
-    double free_share = 0.4;              ///< of the wall where the pull starts to grow
+    double wall_stiffness = 0;            ///< weight of what a planned offset exceeds its wall by
+    double guessed_wall_share = 1;        ///< of the wall, for frames that are a guess
+    Eigen::Vector2d turn_takes_px{0, 0};  ///< of the walls of x and y, per unit of component 2
+    static constexpr int kMaxHorizon = 32;
 };
 
-/// Causal smoothing of one path of three components. Each step minimises, over a receding horizon,
+/// Causal smoothing of one path of three components. Each step plans the outputs x over a receding
+/// horizon, to minimise
 ///     sum_t (x_t - 2 x_{t-1} + x_{t-2})^2 + pull sum_t (x_t - T_t)^2
+///         + wall_stiffness sum_t max(0, |x_t - T_t| - wall_t)^2
 /// with the two outputs emitted last fixed, the path T known for the lookahead frames and guessed
-/// beyond them (damped constant velocity). That is a fixed set of taps per pull. The pull grows
-/// smoothly as an offset nears its wall; beyond it the offset is cut. State: offsets S = x - T and
-/// the velocity; no absolute path, so nothing drifts.
+/// beyond them (damped constant velocity), and emits the first one, cut at the wall. The pull grows
+/// as the offset nears its wall. State: the velocity and the demand for pull; offsets S = x - T
+/// come from outside, there is no absolute path, so nothing drifts.
 class PathSmoother {
  public:
     explicit PathSmoother(const PathSmootherOptions& options);
@@ -42,26 +46,28 @@ class PathSmoother {
     Eigen::Vector3d Next(const Window& window);
     void Reset();
 
-    /// The bound that is in force for |offset|.
-    [[nodiscard]] const Eigen::Vector3d& wall() const { return options_.wall; }
-
  private:
-    /// S_t = early a + earlier b + sum_j ahead_j c_j + velocity d.
-    struct Taps {
-        double early;
-        double earlier;
-        double velocity;
-        std::array<double, kMaxLookahead> ahead;
-    };
-    static constexpr int kPulls = 48;
+    static constexpr int kMaxPlan = 1 + kMaxLookahead + PathSmootherOptions::kMaxHorizon;
+    using Planned = std::array<double, kMaxPlan>;
 
-    [[nodiscard]] Taps Solve(double pull) const;
-    [[nodiscard]] double Apply(const Taps& taps, const Window& window, int component) const;
+    void UpdateVelocity(const Window& window);
+    double UpdatePull(double early_offset, int component);
+    void GuessPath(const Window& window, int component);
+    void SetWall(int component);
+    void Plan(double early, double earlier, double pull);
+    bool FindExceeded();
 
     PathSmootherOptions options_;
-    std::array<Taps, kPulls> taps_;
+    int frames_;  // planned
     Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
     Eigen::Vector3d demand_ = Eigen::Vector3d::Zero();
+
+    // of the component that is being planned
+    Planned path_{};
+    Planned wall_{};
+    Planned output_{};
+    std::array<int, kMaxPlan> exceeded_{};  // -1, 0, 1: the wall on which side
+    Planned turn_{};                        // planned offset of component 2
 };
 
 }  // namespace hitchview::algo

@@ -6,24 +6,38 @@
 namespace hitchview::algo {
 namespace {
 
-using Eigen::Vector3d;
-
 double AnalysisScale(const Projection& view) {
     if (view.IsRing()) return std::min(1.0, 1024.0 / view.width_px);
     return view.width_px > 960 ? 0.5 : 1.0;
 }
 
-/// Bounds of a unit's offset: shift in px of the view, turn in rad.
-Vector3d Wall(const Projection& view, const UnifiedVertexMotionOptions& options) {
-    constexpr double kDegree = std::numbers::pi / 180;
-    // A ring has no border sideways: there the bound is the lag of the heading in a bend.
-    if (view.IsRing()) return {8 * kDegree * view.focal_px, 3 * kDegree, 3 * kDegree};
-    if (options.border == Border::kFree) return {0.28 * view.width_px, 0.28 * view.height_px, 0.06};
-    const double margin = 0.5 * (1 - options.cropping);
-    // The turn eats its share of the shift's margin: half the diagonal times the turn.
-    const double turn = 0.25 * margin;
-    return {margin * view.width_px - 0.5 * turn * view.height_px,
-            margin * view.height_px - 0.5 * turn * view.width_px, turn};
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// Nothing is uncovered by a ring's heading or by a free border: the bound is how far the picture
+/// may lag a bend or leave its place. What pulls back grows long before it.
+void BoundFreely(const Projection& view, PathSmootherOptions& smoother) {
+    if (view.IsRing()) {  // steering is slow and a vehicle's shake fast: no need to hold back long
+        smoother.wall = {8 * kDegree * view.focal_px, 3 * kDegree, 3 * kDegree};
+        smoother.weakest_pull = 1e-3;
+        smoother.strongest_pull = 0.1;
+        return;
+    }
+    smoother.wall = {0.376 * view.width_px, 0.376 * view.height_px, 0.18};
+}
+
+/// The margin that the zoom leaves is a hard bound, shared by shift and turn; plans keep clear of
+/// it. With few frames seen, what comes is unknown: then the path is followed more closely.
+void BoundByMargin(const Projection& view, double cropping, PathSmootherOptions& smoother) {
+    const double margin = 0.5 * (1 - cropping);
+    const bool sees_ahead = smoother.lookahead_frames >= 3;
+    smoother.wall = {margin * view.width_px, margin * view.height_px,
+                     (sees_ahead ? 0.25 : 0.12) * margin};
+    smoother.turn_takes_px = {0.5 * view.height_px, 0.5 * view.width_px};
+    smoother.wall_stiffness = sees_ahead ? 4 : 0.1;
+    smoother.guessed_wall_share = sees_ahead ? 0.84 : 0.82;
+    smoother.weakest_pull = smoother.strongest_pull = sees_ahead ? 3e-5 : 1.3e-3;
+    smoother.guess_damping = sees_ahead ? 0.95 : 0.8;
+    smoother.horizon_frames = 22;
 }
 
 }  // namespace
@@ -56,17 +70,18 @@ PathSmootherOptions StabilizerOptions(const Projection& view,
                                       const UnifiedVertexMotionOptions& options) {
     PathSmootherOptions smoother;
     smoother.lookahead_frames = options.lookahead_frames;
-    smoother.wall = Wall(view, options);
-    if (view.IsRing()) {  // steering is slow and a vehicle's shake fast: no need to hold back
-                          // longer
-        smoother.weakest_pull = 1e-3;
-        smoother.strongest_pull = 0.1;
+    if (options.border == Border::kCovered && !view.IsRing()) {
+        BoundByMargin(view, options.cropping, smoother);
+    } else {
+        BoundFreely(view, smoother);
     }
     return smoother;
 }
 
 PathSmootherOptions HitchSmootherOptions(const Projection& view) {
     PathSmootherOptions smoother;
+    smoother.guess_damping = 0.85;
+    smoother.velocity_smoothing = 0.15;
     smoother.weakest_pull = 0.03;
     smoother.strongest_pull = 3.0;
     smoother.wall = {8, view.IsRing() ? 0.02 : 8, view.IsRing() ? 0.02 : 0.03};

@@ -37,6 +37,7 @@ struct UnifiedVertexMotion::Record {
     PerOverlap<int> matches;
     PerOverlap<int> candidates;
     PerUnit<int> features;
+    std::optional<Articulation> articulation;
 };
 
 /// Expects a feature where the placement and the stitching field of the frame emitted last put it.
@@ -112,6 +113,10 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
         placement_ = std::make_unique<TrailerPlacement>(tractor_view_, *trailer_view_,
                                                         PlacementOptions(canvas, a.scale()));
         hitch_smoother_ = std::make_unique<PathSmoother>(HitchSmootherOptions(tractor_view_));
+        if (canvas.IsRing()) {
+            articulation_ = std::make_unique<ArticulationEstimator>(
+                *geometry[Unit::kTractor], *geometry[Unit::kTrailer], ArticulationOptions{});
+        }
     }
     LayOut();
     Reset();
@@ -135,6 +140,7 @@ void UnifiedVertexMotion::Reset() {
         if (smoother_[unit]) smoother_[unit]->Reset();
     }
     if (hitch_smoother_) hitch_smoother_->Reset();
+    if (articulation_) articulation_->Reset();
     hitch_known_ = false;
     stitching_.Reset();
     for (const Overlap overlap : kOverlaps) frames_unmatched_[overlap] = kCoastFrames;
@@ -189,6 +195,7 @@ void UnifiedVertexMotion::MatchUnits(Record& record) {
     UpdateSeams(record);
     record.M_tractor_trailer = placement_->M_tractor_trailer();
     record.placed = placement_->acquired();
+    if (articulation_) record.articulation = articulation_->Step(record.intra, record.inter);
 }
 
 /// No overlap has agreed with the placement for so long that it is searched from nothing.
@@ -357,6 +364,7 @@ void UnifiedVertexMotion::Compose(const Record& record) {
     c.seams = record.seams;
     c.matches = record.matches;
     c.features = record.features;
+    c.articulation = record.articulation;
 }
 
 Vector2d UnifiedVertexMotion::OnCanvas(Unit unit, const Vector2d& view_px) const {

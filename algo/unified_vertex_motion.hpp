@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "algo/articulation.hpp"
 #include "algo/canvas_layout.hpp"
 #include "algo/composition.hpp"
 #include "algo/path_smoother.hpp"
@@ -74,6 +75,7 @@ class UnifiedVertexMotion {
     PerUnit<std::unique_ptr<UnitAnalysis>> analysis_;
     std::unique_ptr<ClassicalMatcher> matcher_;
     std::unique_ptr<TrailerPlacement> placement_;
+    std::unique_ptr<ArticulationEstimator> articulation_;  // ring only
     StitchingMotionField stitching_;
     PerUnit<std::unique_ptr<PathSmoother>> smoother_;
     std::unique_ptr<PathSmoother> hitch_smoother_;

@@ -113,4 +113,16 @@ void UnitGeometry::See(const Vector3d& ray, Sights& sights) const {
     for (CameraSight& sight : sights) sight.weight /= sum;
 }
 
+std::optional<SightLine> UnitGeometry::SightAlong(const Vector3d& ray) const {
+    Sights sights;
+    See(ray, sights);
+    const auto best = std::max_element(
+        sights.begin(), sights.end(),
+        [](const CameraSight& a, const CameraSight& b) { return a.weight < b.weight; });
+    if (best == sights.end() || best->weight <= 0) return std::nullopt;
+    // The view shows a point of the surface where the camera sees it: the lens cancels out.
+    const Vector3d& origin_m = mounted(best->camera).position_m;
+    return SightLine{origin_m, (surface_.Hit(ray) - origin_m).normalized()};
+}
+
 }  // namespace hitchview::algo

@@ -34,6 +34,12 @@ struct CameraSight {
     double weight;          ///< share in the view, 0..1; the shares of a ray add up to 1
 };
 
+/// Where a camera stands and in which direction it sees something; in the frame of its unit.
+struct SightLine {
+    Eigen::Vector3d origin_m;   ///< the camera's centre of projection
+    Eigen::Vector3d direction;  ///< of unit length
+};
+
 /// How the cameras of one unit make up its semi-surround view.
 /// Plane: one camera, whose picture is the view. Ring: calibrated cameras on a cylinder round the
 /// hitch point. Neighbouring cameras are blended where both are about equally far from their edge.
@@ -63,6 +69,10 @@ class UnitGeometry {
     /// none.
     [[nodiscard]] std::optional<Eigen::Vector3d> ViewRay(int camera,
                                                          const Eigen::Vector2d& pixel) const;
+
+    /// How the camera with the largest share in `ray` of a ring's view sees what is shown there.
+    /// Empty where no camera has a share.
+    [[nodiscard]] std::optional<SightLine> SightAlong(const Eigen::Vector3d& ray) const;
 
  private:
     struct MountedCamera {

@@ -38,6 +38,7 @@ TruthMeter::TruthMeter(const SimulatedRig& rig, const RigGeometry& geometry)
 void TruthMeter::Observe(const ShownPanorama& shown, const Pipeline& pipeline) {
     const int frame = static_cast<int>(shown.picture.header.sequence);
     for (const Unit unit : algo::kUnits) ObserveShake(unit, frame, *shown.composition);
+    ObserveArticulation(frame, *shown.composition);
     if (frame % kSeamEvery != 0) return;
     for (const algo::Overlap overlap : algo::kOverlaps)
         ObserveSeam(overlap, frame, shown, pipeline);
@@ -63,6 +64,19 @@ void TruthMeter::ObserveShake(Unit unit, int frame, const algo::Composition& com
                                      .squaredNorm();
         ++shake_samples_[unit];
     }
+}
+
+void TruthMeter::ObserveArticulation(int frame, const algo::Composition& composition) {
+    if (!composition.articulation) return;
+    const double truth_rad = sight_.rig().ArticulationAt(frame);
+    const double error_rad = std::abs(composition.articulation->angle_rad - truth_rad);
+    articulation_squares_ += error_rad * error_rad;
+    articulation_.largest_rad = std::max(articulation_.largest_rad, error_rad);
+    articulation_.rms_rad = std::sqrt(articulation_squares_ / ++articulation_.samples);
+}
+
+TruthMeter::ArticulationError TruthMeter::ErrorOfArticulation() const {
+    return articulation_;
 }
 
 void TruthMeter::ObserveSeam(algo::Overlap overlap, int frame, const ShownPanorama& shown,

@@ -16,6 +16,7 @@ namespace hitchview::app {
 ///          root mean square; beside it the same in each unit's own view, as it was taken
 ///   seam   scene points on the seam that both units see: distance between the places where the
 ///          canvas would show them from one and from the other unit
+///   articulation  what the composition says against the yaw between the units, shake included
 /// Thread: the run loop's.
 class TruthMeter {
  public:
@@ -33,9 +34,15 @@ class TruthMeter {
         double p95_px = 0;
         int samples = 0;
     };
+    struct ArticulationError {
+        double rms_rad = 0;
+        double largest_rad = 0;
+        int samples = 0;  ///< panoramas at which it was known
+    };
     [[nodiscard]] Shake ShakeOf(algo::Unit unit) const;
     /// Over both overlaps, of points between the two distances from the camera.
     [[nodiscard]] Seam SeamOf(double from_m, double to_m) const;
+    [[nodiscard]] ArticulationError ErrorOfArticulation() const;
 
  private:
     static constexpr int kLandmarks = 24;
@@ -47,6 +54,7 @@ class TruthMeter {
     };
 
     void ObserveShake(algo::Unit unit, int frame, const algo::Composition& composition);
+    void ObserveArticulation(int frame, const algo::Composition& composition);
     void ObserveSeam(algo::Overlap overlap, int frame, const ShownPanorama& shown,
                      const Pipeline& pipeline);
 
@@ -57,6 +65,8 @@ class TruthMeter {
     algo::PerUnit<double> output_squares_;
     algo::PerUnit<int> shake_samples_;
     std::vector<SeamSample> seam_;
+    double articulation_squares_ = 0;
+    ArticulationError articulation_;
 };
 
 }  // namespace hitchview::app

@@ -135,6 +135,12 @@ nlohmann::json TruthJson(const TruthMeter& truth) {
                                          : nlohmann::json()},
             {"samples", shake.samples}};
     }
+    const TruthMeter::ArticulationError articulation = truth.ErrorOfArticulation();
+    json["articulation"] = nullptr;
+    if (articulation.samples > 0)
+        json["articulation"] = {{"rms_rad", articulation.rms_rad},
+                                {"largest_rad", articulation.largest_rad},
+                                {"samples", articulation.samples}};
     const auto seam = [&](double from, double to) -> nlohmann::json {
         const TruthMeter::Seam s = truth.SeamOf(from, to);
         if (s.samples == 0) return nullptr;
@@ -161,6 +167,9 @@ void PrintTruth(const TruthMeter& before, const TruthMeter& after) {
                     a.median_px);
         std::printf("  seam error %s, p95          %7.2f  %7.2f\n", range.name, b.p95_px, a.p95_px);
     }
+    const TruthMeter::ArticulationError articulation = after.ErrorOfArticulation();
+    std::printf("  articulation error, rms of %d: %.2f degrees\n", articulation.samples,
+                articulation.rms_rad * 57.29578);
 }
 
 }  // namespace

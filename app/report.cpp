@@ -1,5 +1,6 @@
 #include "app/report.hpp"
 
+#include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <nlohmann/json.hpp>
@@ -57,6 +58,22 @@ json EmptySeam() {
     return {{"median_px", nullptr}, {"p95_px", nullptr}, {"worst_frame_px", nullptr}};
 }
 
+/// Null for a rig that cannot tell it.
+json Articulation(const RunSummary& run) {
+    if (!run.ring || run.cameras[algo::Unit::kTrailer] == 0 || run.frames == 0) return nullptr;
+    const ArticulationSummary& a = run.articulation;
+    const auto frames = static_cast<double>(a.frames);
+    json report{{"known_share", frames / static_cast<double>(run.frames)},
+                {"least_rad", nullptr},
+                {"most_rad", nullptr},
+                {"sigma_rad", nullptr}};
+    if (a.frames == 0) return report;
+    report["least_rad"] = a.least_rad;
+    report["most_rad"] = a.most_rad;
+    report["sigma_rad"] = std::sqrt(a.variances / frames);
+    return report;
+}
+
 }  // namespace
 
 json MakeReport(const RunSummary& run, const json& quality) {
@@ -87,6 +104,7 @@ json MakeReport(const RunSummary& run, const json& quality) {
                                           static_cast<double>(run.frames))
                                    : json();
     }
+    report["articulation"] = Articulation(run);
     FillIn(quality, report);
     return report;
 }

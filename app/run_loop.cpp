@@ -1,5 +1,6 @@
 #include "app/run_loop.hpp"
 
+#include <algorithm>
 #include <system_error>
 
 #include "app/board.hpp"
@@ -127,6 +128,7 @@ class Run {
             if (shown.composition->seams[overlap] == algo::SeamState::kLocked)
                 ++summary_.locked_frames[overlap];
         }
+        if (const auto& known = shown.composition->articulation) summary_.articulation.Add(*known);
         const auto done = outputs_.Show(shown, pipeline_, summary_);
         if (done && hook) hook(shown, pipeline_);
         return done;
@@ -141,6 +143,14 @@ class Run {
 };
 
 }  // namespace
+
+void ArticulationSummary::Add(const algo::Articulation& articulation) {
+    const double angle_rad = articulation.angle_rad;
+    least_rad = frames == 0 ? angle_rad : std::min(least_rad, angle_rad);
+    most_rad = frames == 0 ? angle_rad : std::max(most_rad, angle_rad);
+    variances += articulation.sigma_rad * articulation.sigma_rad;
+    ++frames;
+}
 
 hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& options,
                                 const std::atomic<bool>& stop, const ShownHook& hook) {

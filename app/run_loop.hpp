@@ -22,6 +22,16 @@ struct RunOptions {
     bool publish = false;                   ///< over LCM
 };
 
+/// The articulation over a run, as the images told it.
+struct ArticulationSummary {
+    std::uint64_t frames = 0;  ///< panoramas at which it was known
+    double least_rad = 0;      ///< angles, positive to the left; 0 while never known
+    double most_rad = 0;
+    double variances = 0;  ///< sum over `frames`, rad^2
+
+    void Add(const algo::Articulation& articulation);
+};
+
 /// What a run did.
 struct RunSummary {
     std::uint64_t frames = 0;           ///< panoramas shown
@@ -33,6 +43,7 @@ struct RunSummary {
     double newest_total_ms = 0;  ///< of the frame set processed last
     AllStageTimes times{};       ///< when the run has ended
     algo::PerOverlap<std::uint64_t> locked_frames;
+    ArticulationSummary articulation{};
     algo::PerUnit<int> cameras;
     bool ring = false;
 };

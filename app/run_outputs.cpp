@@ -33,6 +33,10 @@ hal::PanoramaStatus Status(const ShownPanorama& shown, const RunSummary& run, ha
     for (const algo::Unit unit : algo::kUnits) {
         status.unit_features[static_cast<std::size_t>(unit)] = c.features[unit];
     }
+    if (c.articulation) {
+        status.articulation_rad = c.articulation->angle_rad;
+        status.articulation_sigma_rad = c.articulation->sigma_rad;
+    }
     status.total_ms = run.newest_total_ms;
     status.deadline_misses = run.deadline_misses;
     status.dropped = run.dropped;

@@ -63,7 +63,7 @@ void ScenarioMeter::Observe(const ShownPanorama& shown, const algo::ComposedMap&
     ObserveCoverage(shown, map);
     for (const Overlap overlap : algo::kOverlaps)
         jumps_[overlap].Observe(overlap, *shown.composition);
-    ObserveArticulation(frame, std::nullopt);
+    ObserveArticulation(frame, *shown.composition);
     ++frames_;
 }
 
@@ -94,10 +94,12 @@ void ScenarioMeter::ObserveCoverage(const ShownPanorama& shown, const algo::Comp
         seams_[overlap].Observe(hinged.there[overlap], shown.composition->seams[overlap]);
 }
 
-void ScenarioMeter::ObserveArticulation(int frame, std::optional<double> estimated_rad) {
-    if (!estimated_rad || ArticulationRate_rad_s(frame) >= kFastTurn_rad_s) return;
-    const double error_rad = *estimated_rad - rig_.ArticulationAt(frame);
+void ScenarioMeter::ObserveArticulation(int frame, const algo::Composition& composition) {
+    if (!composition.articulation || ArticulationRate_rad_s(frame) >= kFastTurn_rad_s) return;
+    const double error_rad =
+        std::abs(composition.articulation->angle_rad - rig_.ArticulationAt(frame));
     articulation_squares_ += error_rad * error_rad;
+    largest_articulation_error_rad_ = std::max(largest_articulation_error_rad_, error_rad);
     ++articulation_samples_;
 }
 
@@ -136,6 +138,8 @@ json ScenarioMeter::Figures() const {
         {"rms_deg", articulation_samples_ > 0
                         ? json(std::sqrt(articulation_squares_ / articulation_samples_) / kDegree)
                         : json()},
+        {"largest_deg",
+         articulation_samples_ > 0 ? json(largest_articulation_error_rad_ / kDegree) : json()},
         {"samples", articulation_samples_}};
     return figures;
 }

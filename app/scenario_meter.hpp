@@ -24,7 +24,7 @@ class ScenarioMeter {
  private:
     void ObserveWarp(const algo::ComposedMap& map);
     void ObserveCoverage(const ShownPanorama& shown, const algo::ComposedMap& map);
-    void ObserveArticulation(int frame, std::optional<double> estimated_rad);
+    void ObserveArticulation(int frame, const algo::Composition& composition);
     [[nodiscard]] double ArticulationRate_rad_s(int frame) const;
 
     const drivers::SimulatedRig& rig_;
@@ -42,6 +42,7 @@ class ScenarioMeter {
     double least_coverage_ = 1;         ///< of what the calibration covers with a straight vehicle
     double least_hinged_coverage_ = 1;  ///< of what it covers at the true articulation
     double articulation_squares_ = 0;
+    double largest_articulation_error_rad_ = 0;
     int articulation_samples_ = 0;
     int frames_ = 0;
 };

@@ -76,7 +76,7 @@ double TruthCoverage::ShareOf(const algo::ComposedMap& map, const Reference& ref
             const auto at = static_cast<std::size_t>(row * (map.block_cols() + 1) + col);
             if (reference.covered[at] == 0) continue;
             ++of;
-            covered += AnyData(map, geometry_, row, col, missing) ? 1 : 0;
+            covered += IsRendered(map, geometry_, row, col, missing) ? 1 : 0;
         }
     }
     return of > 0 ? static_cast<double>(covered) / of : 1;

@@ -41,6 +41,7 @@ class TruthSight {
 
     /// Index in the simulated rig of the unit's camera `camera`.
     [[nodiscard]] int RigCamera(algo::Unit unit, int camera) const;
+    [[nodiscard]] const drivers::SimulatedRig& rig() const { return rig_; }
     [[nodiscard]] const RigGeometry& geometry() const { return geometry_; }
 
  private:

@@ -95,6 +95,16 @@ bool HasData(const ComposedMap& map, const RigGeometry& geometry, Unit unit, int
     return false;
 }
 
+bool IsRendered(const ComposedMap& map, const RigGeometry& geometry, int row, int col,
+                std::uint32_t missing) {
+    for (int s = 0; s < map.cameras(); ++s) {
+        const ComposedMap::Corner& corner = map.corner(s, row, col);
+        const bool present = (missing >> s & 1U) == 0;
+        if (present && corner.weight > 0 && Shows(map, geometry, s, corner)) return true;
+    }
+    return false;
+}
+
 WarpGrid WarpOf(const ComposedMap& map, const RigGeometry& geometry, Unit unit, int step) {
     const double spacing = double{ComposedMap::kBlock} * step;
     WarpGrid warp(map.block_rows() / step + 1, map.block_cols() / step + 1, spacing);

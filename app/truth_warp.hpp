@@ -33,6 +33,10 @@ struct WarpGrid {
 bool HasData(const algo::ComposedMap& map, const RigGeometry& geometry, algo::Unit unit, int row,
              int col, std::uint32_t missing = 0);
 
+/// True where a camera of any unit shows something and has a share in the picture.
+bool IsRendered(const algo::ComposedMap& map, const RigGeometry& geometry, int row, int col,
+                std::uint32_t missing);
+
 /// From the corners of the rendered map, every `step`-th.
 WarpGrid WarpOf(const algo::ComposedMap& map, const RigGeometry& geometry, algo::Unit unit,
                 int step);

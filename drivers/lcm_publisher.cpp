@@ -156,6 +156,8 @@ Result<Done> LcmPublisher::DoPublish(const hal::PanoramaStatus& status) {
         .total_ms = status.total_ms,
         .deadline_misses = static_cast<std::int64_t>(status.deadline_misses),
         .dropped = static_cast<std::int64_t>(status.dropped),
+        .articulation_rad = status.articulation_rad,
+        .articulation_sigma_rad = status.articulation_sigma_rad,
     };
     message.seam_state[0] = static_cast<std::int8_t>(status.seams[0]);
     message.seam_state[1] = static_cast<std::int8_t>(status.seams[1]);

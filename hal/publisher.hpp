@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -52,6 +53,10 @@ struct PanoramaStatus {
     double total_ms = 0;                 ///< processing of this frame set
     std::uint64_t deadline_misses = 0;   ///< since start
     std::uint64_t dropped = 0;           ///< frame sets never shown, since start
+    /// Yaw of the trailer relative to the tractor as the images tell it, positive to the left, and
+    /// its standard deviation; not a number while it is not known.
+    double articulation_rad = std::numeric_limits<double>::quiet_NaN();
+    double articulation_sigma_rad = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Hands results to the display units. Borrowed data is copied or sent before the call returns.

@@ -134,6 +134,7 @@ TEST(ReportTest, HasEveryFigureAndNullForWhatWasNotMeasured) {
             EXPECT_TRUE(report.at("units").at(unit).at(figure).is_null()) << unit << ' ' << figure;
         }
     }
+    EXPECT_TRUE(report.at("articulation").is_null()) << "a plane has no calibrated hinge";
     const json& seam = report.at("seams").at("right");
     for (const char* figure : {"median_px", "p95_px", "worst_frame_px"}) {
         EXPECT_TRUE(seam.at(figure).is_null()) << figure;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
+#include "app/report.hpp"
 #include "tests/support/shown_panoramas.hpp"
 #include "tests/support/simulated_rig_files.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -97,6 +99,18 @@ TEST_F(SimulatedRunTest, ThePanoramaIsTheSameOnAnyNumberOfWorkers) {
     const auto alone = RunAndKeep(Rig(), {.workers = 1});
     ASSERT_EQ(alone.size(), kFrames);
     for (const int workers : {2, 5}) ExpectSame(alone, RunAndKeep(Rig(), {.workers = workers}));
+}
+
+TEST_F(SimulatedRunTest, TheArticulationIsReported) {
+    const std::atomic<bool> stop{false};
+    const auto summary = RunRig(LoadRigConfig(Rig()).value(), {}, stop);
+    ASSERT_TRUE(summary) << summary.error();
+    const nlohmann::json articulation = MakeReport(summary.value(), nullptr).at("articulation");
+    EXPECT_EQ(articulation.at("known_share"), 1);
+    EXPECT_LE(articulation.at("least_rad"), articulation.at("most_rad"));
+    EXPECT_GT(articulation.at("least_rad"), -0.2);  // the drive begins straight
+    EXPECT_LT(articulation.at("most_rad"), 0.1);
+    EXPECT_GT(articulation.at("sigma_rad"), 0);
 }
 
 TEST_F(SimulatedRunTest, PanoramasOfNeighbouringSetsDiffer) {

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "algo/articulation.hpp"
 #include "algo/exposure_gains.hpp"
 #include "algo/feature_tracker.hpp"
 #include "algo/panorama_renderer.hpp"
@@ -12,6 +13,7 @@
 #include "algo/trailer_placement.hpp"
 #include "algo/unified_vertex_motion.hpp"
 #include "tests/support/heap_calls.hpp"
+#include "tests/support/hinged_rig.hpp"
 #include "tests/support/nv12_picture.hpp"
 #include "tests/support/test_pictures.hpp"
 
@@ -87,6 +89,22 @@ TEST_F(HeapTest, RingEstimationTakesNoMemory) {
         std::make_unique<StabilizationMotionField>(ring, StabilizationMotionFieldOptions{});
     IntraMotion motion;
     EXPECT_EQ(HeapCallsOf([&] { field->Estimate(motions, motion); }), 0U);
+}
+
+TEST_F(HeapTest, ArticulationTakesNoMemory) {
+    const auto rig = tests::HingedRig();
+    const auto features = tests::HingedScene(rig, {}, 1).See(0.3, 100);
+    const auto articulation = std::make_unique<ArticulationEstimator>(
+        rig[Unit::kTractor], rig[Unit::kTrailer], ArticulationOptions{});
+    std::optional<Articulation> estimate;
+    const auto search = [&] {
+        articulation->Reset();
+        estimate = articulation->Step({}, features);
+    };
+    EXPECT_EQ(HeapCallsOf(search), 0U);
+    EXPECT_TRUE(estimate);
+    EXPECT_EQ(HeapCallsOf([&] { estimate = articulation->Step({}, features); }), 0U);
+    EXPECT_TRUE(estimate);
 }
 
 TEST_F(HeapTest, TrackingTakesNoMemory) {

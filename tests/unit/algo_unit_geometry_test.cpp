@@ -77,6 +77,24 @@ TEST(UnitGeometryTest, SharesOfARayAddUpToOneWhereAnyCameraSeesIt) {
     EXPECT_LT(blended, seen / 4) << "cameras are blended in strips only";
 }
 
+TEST(UnitGeometryTest, ASightLineIsTheOneOfTheLensWithTheLargestShare) {
+    const auto cameras = tests::LevelCameras(3, 1.2, 0);
+    const UnitGeometry geometry = ThreeCameras();
+    for (const double y : {20.0, 90.0, 150.0, 185.0}) {
+        const Vector2d pixel{150, y};
+        for (int i = 0; i < geometry.cameras(); ++i) {
+            const CameraGeometry& camera = cameras[static_cast<std::size_t>(i)];
+            const auto sight = geometry.SightAlong(*geometry.ViewRay(i, pixel));
+            ASSERT_TRUE(sight);
+            EXPECT_TRUE(sight->origin_m.isApprox(camera.T_unit_camera.translation()));
+            const Vector3d direction =
+                camera.T_unit_camera.linear() * *camera.model.Unproject(pixel);
+            EXPECT_LT((sight->direction - direction).norm(), 1e-6);
+        }
+    }
+    EXPECT_FALSE(geometry.SightAlong({-1, 0, 0})) << "nothing looks back";
+}
+
 TEST(UnitGeometryTest, SharesChangeWithoutJumpsAlongTheHorizon) {
     const UnitGeometry geometry = ThreeCameras();
     constexpr double kStep_px = 0.05;

@@ -142,7 +142,9 @@ TEST_F(LcmPublisherTest, AStatusKeepsEveryField) {
                             .unit_features = {300, 280},
                             .total_ms = 12.5,
                             .deadline_misses = 6,
-                            .dropped = 1}));
+                            .dropped = 1,
+                            .articulation_rad = -0.25,
+                            .articulation_sigma_rad = 0.004}));
 
     const auto message = Read("PANORAMA_STATUS", hitchview_panorama_status_t_decode);
     EXPECT_EQ(message.sequence, 9);
@@ -159,6 +161,16 @@ TEST_F(LcmPublisherTest, AStatusKeepsEveryField) {
     EXPECT_EQ(message.total_ms, 12.5);
     EXPECT_EQ(message.deadline_misses, 6);
     EXPECT_EQ(message.dropped, 1);
+    EXPECT_EQ(message.articulation_rad, -0.25);
+    EXPECT_EQ(message.articulation_sigma_rad, 0.004);
+}
+
+TEST_F(LcmPublisherTest, AnArticulationThatIsNotKnownIsNotANumber) {
+    ASSERT_TRUE(Publisher()->Publish(hal::PanoramaStatus{.sequence = 9}));
+
+    const auto message = Read("PANORAMA_STATUS", hitchview_panorama_status_t_decode);
+    EXPECT_TRUE(std::isnan(message.articulation_rad));
+    EXPECT_TRUE(std::isnan(message.articulation_sigma_rad));
 }
 
 TEST_F(LcmPublisherTest, AValidHitchAngleIsSentWithItsMoment) {

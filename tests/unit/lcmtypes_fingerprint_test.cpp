@@ -96,7 +96,9 @@ TEST(FingerprintTest, ThePanoramaStatusHasNotChanged) {
                            {"int32_t", "unit_features", "2", true},
                            {"double", "total_ms", ""},
                            {"int64_t", "deadline_misses", ""},
-                           {"int64_t", "dropped", ""}});
+                           {"int64_t", "dropped", ""},
+                           {"double", "articulation_rad", ""},
+                           {"double", "articulation_sigma_rad", ""}});
 
     EXPECT_EQ(WireFingerprint(hitchview_panorama_status_t_encode), status.Fingerprint());
 }
