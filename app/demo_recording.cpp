@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "app/jpeg_encoder.hpp"
-#include "calib/rig_calibration.hpp"
+#include "app/truth_calibration.hpp"
 #include "drivers/simulated_can_bus.hpp"
 
 namespace hitchview::app {
@@ -207,16 +207,8 @@ std::string RigYaml(const SimulatedRig& rig, bool unified) {
 }
 
 std::string SaveRig(const SimulatedRig& rig, const DemoRecording& recording) {
-    calib::RigCalibration calibration;
-    calibration.vehicle = "simulated tractor-trailer, 4.5 x 1.5 x 1.8 m";
-    calibration.verdict = calib::Verdict::kPass;
-    calibration.written_by = "hitchview demo, from the simulation's own geometry";
-    for (int i = 0; i < SimulatedRig::kCameras; ++i) {
-        const drivers::SimulatedCameraGeometry& camera = rig.camera(i);
-        calibration.cameras[std::string(camera.name)] =
-            calib::CalibratedCamera::From(camera.unit, camera.geometry);
-    }
-    std::string refused = calib::SaveCalibration(calibration, recording.folder / "rig.calib.yaml");
+    std::string refused =
+        calib::SaveCalibration(CalibrationOf(rig), recording.folder / "rig.calib.yaml");
     if (!refused.empty()) return refused;
     if (!WriteFile(recording.rig(), RigYaml(rig, true)) ||
         !WriteFile(recording.plain_rig(), RigYaml(rig, false))) {

@@ -26,43 +26,13 @@ Vector2d SecondDifference(const algo::Projection& picture, const Vector2d& late,
 }  // namespace
 
 TruthMeter::TruthMeter(const SimulatedRig& rig, const RigGeometry& geometry)
-    : rig_(rig), geometry_(geometry) {
+    : sight_(rig, geometry) {
     for (int i = 0; i < kLandmarks; ++i) {
         const double azimuth = 2 * std::numbers::pi * i / kLandmarks;
         const double elevation = (i % 3) * 0.08;  // level with the horizon and above
         landmarks_[static_cast<std::size_t>(i)] =
             SimulatedRig::kFar_m * Vector3d{std::cos(azimuth), std::sin(azimuth), elevation};
     }
-}
-
-int TruthMeter::RigCamera(Unit unit, int camera) const {
-    return unit == Unit::kTractor ? camera : geometry_.units[Unit::kTractor]->cameras() + camera;
-}
-
-/// The camera of the unit that has the largest share in the view there.
-TruthMeter::Sighting TruthMeter::Sight(Unit unit, int frame, const Vector3d& p_world_m,
-                                       bool behind_others,
-                                       const algo::Composition& composition) const {
-    const algo::UnitGeometry& geometry = *geometry_.units[unit];
-    const auto occlusion =
-        behind_others ? SimulatedRig::Occlusion::kIgnored : SimulatedRig::Occlusion::kTested;
-    Sighting best;
-    double best_share = 0.5;
-    for (int i = 0; i < geometry.cameras(); ++i) {
-        const auto pixel = rig_.ProjectWorldPoint(RigCamera(unit, i), frame, p_world_m, occlusion);
-        if (!pixel) continue;
-        const auto ray = geometry.ViewRay(i, *pixel);
-        if (!ray) continue;
-        algo::UnitGeometry::Sights sights;
-        geometry.See(*ray, sights);
-        for (const algo::CameraSight& sight : sights) {
-            if (sight.camera != i || sight.weight < best_share) continue;
-            best_share = sight.weight;
-            best = {i, geometry.view().Pixel(*ray),
-                    algo::ToCanvas(geometry_.canvas, geometry.view(), composition, unit, *ray)};
-        }
-    }
-    return best;
 }
 
 void TruthMeter::Observe(const ShownPanorama& shown, const Pipeline& pipeline) {
@@ -78,9 +48,10 @@ void TruthMeter::ObserveShake(Unit unit, int frame, const algo::Composition& com
     auto& [late, middle, early] = sightings_[unit];
     early = middle;
     middle = late;
-    const algo::Projection& view = geometry_.units[unit]->view();
+    const algo::Projection& view = sight_.geometry().units[unit]->view();
     for (std::size_t i = 0; i < kLandmarks; ++i) {
-        late[i] = Sight(unit, frame, landmarks_[i], true, composition);
+        late[i] =
+            sight_.Find(unit, frame, landmarks_[i], TruthSight::Occlusion::kIgnored, composition);
         // Another camera sees from another place: that step is parallax of the rig, not shake.
         if (late[i].camera < 0 || late[i].camera != middle[i].camera ||
             late[i].camera != early[i].camera)
@@ -88,7 +59,7 @@ void TruthMeter::ObserveShake(Unit unit, int frame, const algo::Composition& com
         input_squares_[unit] +=
             SecondDifference(view, late[i].view_px, middle[i].view_px, early[i].view_px)
                 .squaredNorm();
-        output_squares_[unit] += SecondDifference(geometry_.canvas, late[i].canvas_px,
+        output_squares_[unit] += SecondDifference(sight_.geometry().canvas, late[i].canvas_px,
                                                   middle[i].canvas_px, early[i].canvas_px)
                                      .squaredNorm();
         ++shake_samples_[unit];
@@ -97,10 +68,7 @@ void TruthMeter::ObserveShake(Unit unit, int frame, const algo::Composition& com
 
 void TruthMeter::ObserveArticulation(int frame, const algo::Composition& composition) {
     if (!composition.articulation) return;
-    const Eigen::Matrix3d R_tractor_trailer =
-        rig_.PoseAt(frame, Unit::kTractor).linear().transpose() *
-        rig_.PoseAt(frame, Unit::kTrailer).linear();
-    const double truth_rad = std::atan2(R_tractor_trailer(1, 0), R_tractor_trailer(0, 0));
+    const double truth_rad = sight_.rig().ArticulationAt(frame);
     const double error_rad = std::abs(composition.articulation->angle_rad - truth_rad);
     articulation_squares_ += error_rad * error_rad;
     articulation_.largest_rad = std::max(articulation_.largest_rad, error_rad);
@@ -123,14 +91,15 @@ void TruthMeter::ObserveSeam(algo::Overlap overlap, int frame, const ShownPanora
         for (int s = 0; s < map.cameras(); ++s) {
             const algo::ComposedMap::Corner& corner = map.corner(s, row, col);
             if (map.unit_of(s) != Unit::kTractor || corner.weight <= 0.1F) continue;
-            const auto point =
-                rig_.WorldPointAt(map.camera_of(s), frame, Vector2d(corner.x, corner.y));
+            const auto point = sight_.WorldPointAt(Unit::kTractor, map.camera_of(s), frame,
+                                                   Vector2d(corner.x, corner.y));
             if (!point) continue;
-            const Sighting other =
-                Sight(Unit::kTrailer, frame, point->p_world_m, false, *shown.composition);
+            const Sighting other = sight_.Find(Unit::kTrailer, frame, point->p_world_m,
+                                               TruthSight::Occlusion::kTested, *shown.composition);
             if (other.camera < 0) continue;
-            seam_.push_back({point->distance_m,
-                             geometry_.canvas.Difference(other.canvas_px, canvas_px).norm()});
+            seam_.push_back(
+                {point->distance_m,
+                 sight_.geometry().canvas.Difference(other.canvas_px, canvas_px).norm()});
         }
     }
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/pipeline.hpp"
+#include "app/truth_sight.hpp"
 #include "drivers/simulated_rig.hpp"
 
 namespace hitchview::app {
@@ -46,28 +47,18 @@ class TruthMeter {
  private:
     static constexpr int kLandmarks = 24;
 
-    /// Where one unit shows a landmark.
-    struct Sighting {
-        int camera = -1;  ///< -1: not seen
-        Eigen::Vector2d view_px = Eigen::Vector2d::Zero();
-        Eigen::Vector2d canvas_px = Eigen::Vector2d::Zero();
-    };
     using Sightings = std::array<Sighting, kLandmarks>;
     struct SeamSample {
         double distance_m;
         double error_px;
     };
 
-    Sighting Sight(algo::Unit unit, int frame, const Eigen::Vector3d& p_world_m, bool behind_others,
-                   const algo::Composition& composition) const;
     void ObserveShake(algo::Unit unit, int frame, const algo::Composition& composition);
     void ObserveArticulation(int frame, const algo::Composition& composition);
     void ObserveSeam(algo::Overlap overlap, int frame, const ShownPanorama& shown,
                      const Pipeline& pipeline);
-    [[nodiscard]] int RigCamera(algo::Unit unit, int camera) const;
 
-    const drivers::SimulatedRig& rig_;
-    const RigGeometry& geometry_;
+    TruthSight sight_;
     std::array<Eigen::Vector3d, kLandmarks> landmarks_;
     algo::PerUnit<std::array<Sightings, 3>> sightings_;  // newest first
     algo::PerUnit<double> input_squares_;

@@ -5,6 +5,7 @@
 #include "app/demo_verb.hpp"
 #include "app/program.hpp"
 #include "app/replay_verb.hpp"
+#include "app/scenario_verb.hpp"
 
 namespace {
 
@@ -35,6 +36,28 @@ void AddRunOptions(CLI::App& verb, ReplayOptions& options) {
                   "write tractor.avi and trailer.avi: each view on the canvas before blending");
     verb.add_flag("--metrics", options.metrics,
                   "track the written views again and fill the report's quality figures");
+}
+
+void AddScenariosOptions(CLI::App& verb, ScenariosOptions& options) {
+    verb.add_option("name", options.names, "scenarios to drive; all unless given");
+    verb.add_option("--frames", options.run.frames, "stop each after so many frame sets")
+        ->check(CLI::Range(1, 36000));
+    verb.add_option("--lookahead", options.run.lookahead_frames,
+                    "frames seen before one is shown: steadier, later by a period each")
+        ->check(CLI::Range(0, kMaxLookaheadFrames));
+    verb.add_option("--camera-width", options.camera_width_px, "width of the cameras, 16:9")
+        ->check(CLI::IsMember({320, 640, 960, 1280, 1920}))
+        ->capture_default_str();
+    verb.add_option("--canvas-width", options.run.canvas_width_px, "width of the panorama")
+        ->check(CLI::IsMember({1024, 2048, 4096}))
+        ->capture_default_str();
+    verb.add_option("--workers", options.run.workers, "threads that share the work of a frame")
+        ->check(CLI::Range(1, kMaxWorkers))
+        ->capture_default_str();
+    verb.add_option("--out", options.run.out, "folder for panoramas and the worst seams");
+    verb.add_option("--cache", options.run.cache,
+                    "folder where rendered frames are kept for the next time (1 to 2 GB each)");
+    verb.add_option("--json", options.json, "file for all figures");
 }
 
 /// Hands the arguments behind a verb to the program that does it.
@@ -97,6 +120,13 @@ int main(int argc, char** argv) {
                             "Example: hitchview run --rig /etc/hitchview/rig.yaml");
     AddRunOptions(run_verb, run);
 
+    ScenariosOptions scenarios;
+    CLI::App& scenarios_verb = *app.add_subcommand(
+        "scenarios",
+        "Drive the simulated vehicle through many situations and measure against the truth.\n"
+        "Example: hitchview scenarios slalom --frames 300 --json out/slalom.json");
+    AddScenariosOptions(scenarios_verb, scenarios);
+
     app.add_subcommand("view", "Show the published panorama: hitchview view --help");
     app.add_subcommand("eval", "Measure recordings of views and panoramas: hitchview eval --help");
 
@@ -107,6 +137,7 @@ int main(int argc, char** argv) {
     }
     if (demo_verb.parsed()) return DemoVerb(demo, stop);
     if (replay_verb.parsed()) return ReplayVerb(replay, stop);
+    if (scenarios_verb.parsed()) return ScenariosVerb(scenarios, stop);
     run.run.realtime = true;
     run.run.publish = true;
     return ReplayVerb(run, stop);

@@ -19,7 +19,6 @@ constexpr double kPitchDown_rad = 5 * kDegree;
 constexpr double kMountHeight_m = 1.7 - VehicleDimensions::kHitchHeight;
 constexpr double kSide_m = 0.72;
 constexpr double kFromHitch_m = 0.9;  // left_front to left: 1.8 m when the vehicle is straight
-constexpr double kSurfaceTolerance = 1e-3;  // of the distance: rays are cast in single precision
 
 /// Mount and direction of one camera in the frame of its unit; yaw positive to the left.
 struct Mount {
@@ -207,14 +206,23 @@ double SimulatedRig::ArticulationAt(int frame) const {
     return std::atan2(forward_of_trailer.y(), forward_of_trailer.x());
 }
 
+Outlook SimulatedRig::OutlookOf(int camera_index, int frame) const {
+    return {world_, CameraPoseAt(camera_index, frame).translation(), MomentOf(frame)};
+}
+
 std::optional<SimulatedRig::SeenPoint> SimulatedRig::WorldPointAt(int camera_index, int frame,
                                                                   const Vector2d& pixel) const {
+    return WorldPointAt(camera_index, frame, pixel, OutlookOf(camera_index, frame));
+}
+
+std::optional<SimulatedRig::SeenPoint> SimulatedRig::WorldPointAt(int camera_index, int frame,
+                                                                  const Vector2d& pixel,
+                                                                  const Outlook& outlook) const {
     const auto ray_camera = camera(camera_index).geometry.model.Unproject(pixel);
     if (!ray_camera) return std::nullopt;
     const Isometry3d T_world_camera = CameraPoseAt(camera_index, frame);
     const Vector3d ray_world = T_world_camera.linear() * *ray_camera;
-    const double distance_m = std::min(
-        world_.DistanceTo(T_world_camera.translation(), MomentOf(frame), ray_world), kFar_m);
+    const double distance_m = std::min(outlook.DistanceTo(ray_world), kFar_m);
     return SeenPoint{T_world_camera.translation() + distance_m * ray_world, distance_m};
 }
 
@@ -225,11 +233,8 @@ std::optional<Vector2d> SimulatedRig::ProjectWorldPoint(int camera_index, int fr
     const Isometry3d T_world_camera = CameraPoseAt(camera_index, frame);
     const auto pixel = lens.Project(T_world_camera.inverse() * p_world_m);
     if (!pixel || !InImage(lens, *pixel)) return std::nullopt;
-    if (occlusion == Occlusion::kIgnored) return pixel;
-    const Vector3d to_point = p_world_m - T_world_camera.translation();
-    const double first_m =
-        world_.DistanceTo(T_world_camera.translation(), MomentOf(frame), to_point.normalized());
-    if (first_m < to_point.norm() * (1 - kSurfaceTolerance)) return std::nullopt;
+    if (occlusion == Occlusion::kTested && !OutlookOf(camera_index, frame).IsFreeTo(p_world_m))
+        return std::nullopt;
     return pixel;
 }
 

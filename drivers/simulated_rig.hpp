@@ -11,6 +11,7 @@
 #include "algo/camera_model.hpp"
 #include "drivers/simulated_exposure.hpp"
 #include "drivers/simulated_motion.hpp"
+#include "drivers/simulated_outlook.hpp"
 #include "drivers/simulated_renderer.hpp"
 #include "drivers/simulated_snowfall.hpp"
 
@@ -77,6 +78,12 @@ class SimulatedRig {
     /// What the pixel shows; empty where the lens has no ray.
     [[nodiscard]] std::optional<SeenPoint> WorldPointAt(int camera_index, int frame,
                                                         const Eigen::Vector2d& pixel) const;
+    /// Same for many pixels of one picture; `outlook` is that of the camera and frame.
+    [[nodiscard]] std::optional<SeenPoint> WorldPointAt(int camera_index, int frame,
+                                                        const Eigen::Vector2d& pixel,
+                                                        const Outlook& outlook) const;
+    /// From the camera, at the frame.
+    [[nodiscard]] Outlook OutlookOf(int camera_index, int frame) const;
 
     enum class Occlusion { kIgnored, kTested };
     /// Pixel that shows the point; empty outside the image, and with kTested also behind something.

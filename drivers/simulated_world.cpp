@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 
 #include "drivers/simulated_noise.hpp"
 #include "drivers/simulated_placement.hpp"
@@ -131,15 +130,6 @@ Colour World::GroundColour(const Surroundings& around, std::span<const std::uint
     }
     const float light = LightAt(around, p_m) * (1 - shadow * sunlight_);
     return ThroughAir(colour * light, distance_m);
-}
-
-double World::DistanceTo(const Vector3d& eye_world, const Moment& moment,
-                         const Vector3d& direction) const {
-    Surroundings around;
-    Look(eye_world, moment, 0, around);
-    std::vector<std::uint32_t> all(around.solids.size());
-    std::iota(all.begin(), all.end(), 0U);
-    return Cast(around, all, direction.cast<float>()).distance_m;
 }
 
 }  // namespace hitchview::drivers

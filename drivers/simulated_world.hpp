@@ -57,10 +57,6 @@ class World {
                                   const Eigen::Vector3f& direction, const Hit& hit,
                                   float pixel_rad) const;
 
-    /// Distance from `eye_world` to the first thing along `direction`; kNoHit for the sky.
-    [[nodiscard]] double DistanceTo(const Eigen::Vector3d& eye_world, const Moment& moment,
-                                    const Eigen::Vector3d& direction) const;
-
     [[nodiscard]] const Lighting& lighting() const { return lighting_; }
 
  private:

@@ -1,0 +1,122 @@
+#include "app/scenario_run.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "app/scenario_frames.hpp"
+#include "app/scenario_meter.hpp"
+#include "app/scenario_pictures.hpp"
+#include "app/truth_calibration.hpp"
+#include "app/worker_pool.hpp"
+
+namespace hitchview::app {
+namespace {
+
+using drivers::SimulatedRig;
+using nlohmann::json;
+
+RigConfig ConfigOf(const SimulatedRig& rig, int canvas_width_px) {
+    RigConfig config;
+    config.file = "simulated rig";
+    config.canvas.projection = CanvasConfig::Projection::kCylinder;
+    config.canvas.size_px = {canvas_width_px, canvas_width_px * 360 / 2048 / 2 * 2};
+    for (int i = 0; i < SimulatedRig::kCameras; ++i) {
+        config.units[rig.camera(i).unit].cameras.push_back(
+            {.name = std::string(rig.camera(i).name), .source = CameraConfig::Source::kSimulated});
+    }
+    return config;
+}
+
+hal::Checked<RigGeometry> GeometryOf(const SimulatedRig& rig, int canvas_width_px) {
+    CameraFormats formats;
+    for (int i = 0; i < SimulatedRig::kCameras; ++i)
+        formats[rig.camera(i).unit].push_back(rig.format());
+    return MakeRigGeometry(ConfigOf(rig, canvas_width_px), CalibrationOf(rig), formats);
+}
+
+algo::UnifiedVertexMotionOptions MotionOptions(const ScenarioRunOptions& options) {
+    algo::UnifiedVertexMotionOptions motion;
+    motion.lookahead_frames = options.lookahead_frames;
+    return motion;
+}
+
+json StageJson(const AllStageTimes& times) {
+    json stages;
+    for (int i = 0; i < kStages; ++i) {
+        stages[std::string(ToString(static_cast<Stage>(i)))] =
+            times[static_cast<std::size_t>(i)].Summarise().p50_ms;
+    }
+    return stages;
+}
+
+/// One rig, one pipeline and what looks at it.
+class Drive {
+ public:
+    Drive(const SimulatedRig& rig, const RigGeometry& geometry, const ScenarioRunOptions& options,
+          const std::filesystem::path& cache, ScenarioPictures& pictures)
+        : frames_to_show_(
+              std::min(options.frames.value_or(rig.options().frames), rig.options().frames)),
+          workers_(options.workers),
+          frames_(rig, options.lookahead_frames + 2, cache, workers_),
+          pipeline_(geometry, MotionOptions(options), workers_),
+          meter_(rig, geometry),
+          pictures_(pictures) {}
+
+    json Run(const std::atomic<bool>& stop) {
+        Prime();
+        for (int frame = 0; frame < frames_to_show_ && !stop; ++frame)
+            Look(pipeline_.Process(frames_.Take(frame)));
+        while (const ShownPanorama* shown = pipeline_.Flush()) Look(shown);
+        json figures = meter_.Figures();
+        figures["stage_p50_ms"] = StageJson(pipeline_.times());
+        pipeline_.Start();  // gives the last leases back while the pools live
+        return figures;
+    }
+
+ private:
+    void Prime() {
+        const int sets = std::min(ScenarioFrames::kBatch, frames_to_show_);
+        for (int i = 0; i < sets && !pipeline_.Prime(frames_.Peek(i)); ++i) {
+        }
+        pipeline_.Start();
+    }
+
+    void Look(const ShownPanorama* shown) {
+        if (shown == nullptr) return;
+        meter_.Observe(*shown, pipeline_.map());
+        const int frame = static_cast<int>(shown->picture.header.sequence);
+        for (const algo::Overlap overlap : algo::kOverlaps) {
+            if (const auto error_px = meter_.StripError_px(frame, overlap))
+                pictures_.OfferSeam(overlap, *error_px, *shown, pipeline_);
+        }
+        pictures_.OfferPanorama(*shown);
+    }
+
+    int frames_to_show_;
+    WorkerPool workers_;
+    ScenarioFrames frames_;
+    Pipeline pipeline_;
+    ScenarioMeter meter_;
+    ScenarioPictures& pictures_;
+};
+
+}  // namespace
+
+hal::Checked<json> RunScenario(const std::string& name,
+                               const drivers::SimulationOptions& simulation,
+                               const ScenarioRunOptions& options, const std::atomic<bool>& stop) {
+    const auto rig = SimulatedRig::Create(simulation);
+    if (!rig) return name + ": " + rig.error();
+    const auto geometry = GeometryOf(*rig.value(), options.canvas_width_px);
+    if (!geometry) return name + ": " + geometry.error();
+    const std::filesystem::path cache = options.cache.empty()
+                                            ? options.cache
+                                            : options.cache / (name + "-" + CacheKey(*rig.value()));
+    ScenarioPictures pictures(name, options.out,
+                              options.frames.value_or(rig.value()->options().frames));
+    json figures = Drive(*rig.value(), geometry.value(), options, cache, pictures).Run(stop);
+    if (const std::string refused = pictures.Write(); !refused.empty()) return refused;
+    return figures;
+}
+
+}  // namespace hitchview::app
