@@ -83,10 +83,11 @@ Profiles SmoothByConfidence(const Profiles& U, const Profiles& confidence, doubl
     const SymmetricBand smoothness = SmoothnessMatrix(U.rows(), radius_frames, 2 * mu);
     Profiles x = Profiles::Zero(U.rows(), U.cols());
     for (Index k = 0; k < U.cols(); ++k) {
+        if (!(confidence.col(k).maxCoeff() > 0)) continue;
         SymmetricBand A = smoothness;
         A.AddDiagonal(confidence.col(k));
         const BandedCholesky factor(A);
-        if (factor.positive_definite() && confidence.col(k).maxCoeff() > 0)
+        if (factor.positive_definite())
             x.col(k) = factor.Solve(confidence.col(k).cwiseProduct(U.col(k)));
     }
     return x;

@@ -9,31 +9,31 @@
 #include "algo/path_smoother.hpp"
 #include "algo/rig_motion.hpp"
 #include "algo/stitching_motion_field.hpp"
-#include "algo/task_runner.hpp"
+#include "algo/vertex_motion.hpp"
 
 namespace hitchview::algo {
 
 /// Unified vertex motion in its live form (facts 4.6): causal, fixed memory, one step per frame
 /// set. A rig has a tractor and perhaps a trailer.
-class UnifiedVertexMotion {
+class UnifiedVertexMotion final : public VertexMotion {
  public:
     /// `geometry[kTrailer]` may be empty. The canvas and both views have the same projection.
     UnifiedVertexMotion(const Projection& canvas,
                         const PerUnit<std::optional<UnitGeometry>>& geometry,
                         const UnifiedVertexMotionOptions& options);
-    ~UnifiedVertexMotion();
+    ~UnifiedVertexMotion() override;
 
     /// Before the first step: matches the two views of one frame set to lay them out on the canvas
     /// (plane) or to find the trailer (ring). True once that is done; else try the next set.
-    bool Prime(const RigFrames& frames, TaskRunner& runner);
+    bool Prime(const RigFrames& frames, TaskRunner& runner) override;
 
     /// One frame set in. `late` = frames.lookahead: the composition for the set given that many
     /// steps ago; empty while there is none yet.
-    const Composition* Step(const RigFrames& frames, TaskRunner& runner);
+    const Composition* Step(const RigFrames& frames, TaskRunner& runner) override;
     /// After the last set: the compositions that the lookahead still holds back, one per call.
-    const Composition* Flush();
+    const Composition* Flush() override;
     /// Forgets everything that crosses frames; the layout stays.
-    void Reset();
+    void Reset() override;
 
     [[nodiscard]] bool has_trailer() const { return trailer_view_.has_value(); }
 
