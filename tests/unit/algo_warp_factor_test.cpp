@@ -17,7 +17,7 @@ VertexField Waves(const Mesh& mesh, double amplitude_px) {
         for (int col = 0; col < Mesh::kVertexCols; ++col) {
             const double turn = 2 * M_PI * col / Mesh::kCols;  // closes on a ring
             field.col(Mesh::Index(row, col)) =
-                amplitude_px * Eigen::Vector2f(std::sin(turn + 0.4 * row), std::cos(2 * turn));
+                amplitude_px * Eigen::Vector2f(std::sin(turn + 0.4 * row), std::cos(turn));
         }
     }
     CloseRing(mesh, field);
