@@ -163,29 +163,26 @@ void OfflineUnifiedVertexMotion::Place() {
     }
 }
 
-CanvasPairs OfflineUnifiedVertexMotion::PairsOnCanvas(std::size_t frame) const {
+CanvasPairs OfflineUnifiedVertexMotion::PairsOnCanvas(std::size_t frame, Overlap overlap) const {
     const auto on_canvas = [&](Unit unit, const Vector2d& view_px) {
         return ToCanvas(canvas_, view(unit), compositions_[frame], unit, view(unit).Ray(view_px));
     };
     CanvasPairs pairs;
-    for (const Overlap overlap : kOverlaps) {
-        for (const InterFeature& f : learnt_[frame].inter[overlap]) {
-            const CanvasPair pair{on_canvas(Unit::kTractor, f.tractor_px),
-                                  on_canvas(Unit::kTrailer, f.trailer_px)};
-            if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < kMaxParallax_px)
-                pairs.push_back(pair);
-        }
+    for (const InterFeature& f : learnt_[frame].inter[overlap]) {
+        const CanvasPair pair{on_canvas(Unit::kTractor, f.tractor_px),
+                              on_canvas(Unit::kTrailer, f.trailer_px)};
+        if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < kMaxParallax_px)
+            pairs.push_back(pair);
     }
     return pairs;
 }
 
 /// Of every frame: what is left between the two views where they are now.
 void OfflineUnifiedVertexMotion::Measure(Profiles& discrepancy, Profiles& confidence) const {
-    const double kappa = options_.motion.kappa;
-    const PropagationOptions propagation = StitchingOptions(canvas_, kappa).propagation;
+    OverlapDiscrepancy meter(canvas_, StitchingOptions(canvas_, options_.motion.kappa));
     for (std::size_t i = 0; i < learnt_.size(); ++i) {
-        const MeasuredDiscrepancy measured =
-            MeasureDiscrepancy(canvas_, PairsOnCanvas(i), kappa, propagation);
+        MeasuredDiscrepancy measured;
+        for (const Overlap overlap : kOverlaps) meter.Measure(PairsOnCanvas(i, overlap), measured);
         SetRow(discrepancy, i, measured.field);
         SetRow(confidence, i, measured.confidence.replicate<2, 1>());
     }

@@ -60,7 +60,7 @@ class OfflineUnifiedVertexMotion final : public VertexMotion {
     void Place();
     void Stitch();
     void Measure(Profiles& discrepancy, Profiles& confidence) const;
-    [[nodiscard]] CanvasPairs PairsOnCanvas(std::size_t frame) const;
+    [[nodiscard]] CanvasPairs PairsOnCanvas(std::size_t frame, Overlap overlap) const;
     [[nodiscard]] Profiles StitchingProfiles(Unit unit) const;
 
     [[nodiscard]] const Projection& view(Unit unit) const {

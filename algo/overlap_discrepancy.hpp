@@ -11,9 +11,34 @@ struct MeasuredDiscrepancy {
     VertexScalars confidence = VertexScalars::Zero();  ///< 0..1; 0: no pairs near the vertex
 };
 
-/// Spreads the pairs' discrepancies to the vertices around the points where both views meet. A
-/// vertex counts only where its neighbours were heard too, because the field is a median over them.
-MeasuredDiscrepancy MeasureDiscrepancy(const Projection& canvas, const CanvasPairs& pairs,
-                                       double kappa, const PropagationOptions& propagation);
+/// Measures the discrepancy of single frames: the dominant plane of an overlap by a homography,
+/// what does not lie on it by the votes of the pairs around a vertex.
+class OverlapDiscrepancy {
+ public:
+    OverlapDiscrepancy(const Projection& canvas, const StitchingMotionFieldOptions& options);
+
+    /// Adds the pairs of one overlap to `measured`; where it has a value already, the more
+    /// confident one stays.
+    void Measure(const CanvasPairs& pairs, MeasuredDiscrepancy& measured);
+
+ private:
+    /// Motion of the canvas from the tractor's to the trailer's position, about `origin_px`.
+    struct Plane {
+        Eigen::Matrix3d H = Eigen::Matrix3d::Identity();
+        Eigen::Vector2d origin_px = Eigen::Vector2d::Zero();
+        bool known = false;
+    };
+
+    [[nodiscard]] Eigen::Vector2d Gap(const CanvasPair& pair) const;
+    [[nodiscard]] Eigen::Vector2d MeetingPoint(const CanvasPair& pair) const;
+    [[nodiscard]] Plane FitPlane(const CanvasPairs& pairs);
+    [[nodiscard]] Eigen::Vector2d GapOn(const Plane& plane, const Eigen::Vector2d& at_px) const;
+    [[nodiscard]] bool AllNeighboursHeard(const VertexScalars& votes, int row, int col) const;
+
+    Projection canvas_;
+    Mesh mesh_;
+    StitchingMotionFieldOptions options_;
+    MagsacEstimator<HomographyModel, kMaxCanvasPairs> homography_;
+};
 
 }  // namespace hitchview::algo
