@@ -5,7 +5,7 @@
 namespace hitchview::algo {
 
 struct FieldExtensionOptions {
-    double support = 8;  ///< pull of a fully supported vertex to its measured value
+    double support = 30;  ///< pull of a fully supported vertex to its measured value
     double fade = 0.35;  ///< pull of an unsupported vertex to zero
 };
 

@@ -15,7 +15,7 @@ namespace hitchview::algo {
 struct OfflineOptions {
     UnifiedVertexMotionOptions motion{};  ///< lookahead_frames has no meaning here
     Coupling coupling = Coupling::kCorrected;
-    PaperStagesOptions stages{.mu = 0.1};
+    PaperStagesOptions stages{.mu = 0.03};
     double placement_mu = 0.3;  ///< kCorrected: smoothness of the trailer's placement in time
 };
 
