@@ -5,6 +5,7 @@
 #include "algo/exposure_gains.hpp"
 #include "algo/feature_tracker.hpp"
 #include "algo/panorama_renderer.hpp"
+#include "algo/paper_weights_smoother.hpp"
 #include "algo/path_smoother.hpp"
 #include "algo/semi_surround_view.hpp"
 #include "algo/stabilization_motion_field.hpp"
@@ -87,6 +88,18 @@ TEST_F(HeapTest, RingEstimationTakesNoMemory) {
         std::make_unique<StabilizationMotionField>(ring, StabilizationMotionFieldOptions{});
     IntraMotion motion;
     EXPECT_EQ(HeapCallsOf([&] { field->Estimate(motions, motion); }), 0U);
+}
+
+TEST_F(HeapTest, CausalPaperWeightsTakeNoMemory) {
+    const ProfileSmoothingOptions options;
+    const PaperWeightsSmoother smoother(options, 3);
+    OutputHistory history(options.radius_frames);
+    const std::array<Eigen::Vector3d, 3> ahead{};
+    EXPECT_EQ(HeapCallsOf([&] {
+                  history.Move({1, 2, 3});
+                  history.Push(smoother.Next({history.outputs(), ahead}));
+              }),
+              0U);
 }
 
 TEST_F(HeapTest, TrackingTakesNoMemory) {
