@@ -6,7 +6,7 @@ namespace hitchview::algo {
 
 struct FieldExtensionOptions {
     double support = 30;  ///< pull of a fully supported vertex to its measured value
-    double fade = 0.35;  ///< pull of an unsupported vertex to zero
+    double fade = 0.35;   ///< pull of an unsupported vertex to zero
 };
 
 /// Continues a field that was measured in the overlap alone over the whole mesh: the minimum of

@@ -103,6 +103,19 @@ hal::Checked<hal::Done> Learn(Board& board, algo::OfflineUnifiedVertexMotion& mo
     return hal::Done{};
 }
 
+/// What is known of a run before its first frame.
+RunSummary EmptySummary(const RigConfig& config, const Board& board, const RigGeometry& rig,
+                        const std::optional<calib::RigCalibration>& calibration) {
+    RunSummary summary;
+    summary.period_ms = std::chrono::duration<double, std::milli>(board.period()).count();
+    if (calibration) summary.calibration_id = calibration->id();
+    summary.ring = rig.canvas.IsRing();
+    for (const algo::Unit unit : algo::kUnits) {
+        summary.cameras[unit] = static_cast<int>(config.units[unit].cameras.size());
+    }
+    return summary;
+}
+
 /// Drives one opened rig; see RunRig.
 class Run {
  public:
@@ -203,13 +216,7 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
         if (!board) return board.error();
     }
 
-    RunSummary summary;
-    summary.period_ms = std::chrono::duration<double, std::milli>((*board)->period()).count();
-    if (*calibration) summary.calibration_id = (*calibration)->id();
-    summary.ring = rig.value().canvas.IsRing();
-    for (const algo::Unit unit : algo::kUnits) {
-        summary.cameras[unit] = static_cast<int>(config.units[unit].cameras.size());
-    }
+    RunSummary summary = EmptySummary(config, **board, rig.value(), *calibration);
     if (const auto made = MakeFolder(options.out); !made) return made.error();
     auto outputs = RunOutputs::Open(config, options, **board, summary, pipeline.format());
     if (!outputs) return outputs.error();
