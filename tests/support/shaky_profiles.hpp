@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <opencv2/core.hpp>
 
 #include "algo/profile_smoothing.hpp"
@@ -19,7 +20,7 @@ inline Eigen::VectorXd ShakyPath(int frames, std::uint64_t seed) {
     for (int t = 0; t < frames; ++t) {
         swing += random.gaussian(1.2) - 0.9 * shake - 0.3 * swing;  // a damped oscillation
         shake += 0.6 * swing;
-        path(t) = 12 * std::sin(2 * 3.14159265 * slow_hz * t / 30 + phase) + shake;
+        path(t) = 12 * std::sin(2 * std::numbers::pi * slow_hz * t / 30 + phase) + shake;
     }
     return path;
 }

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "algo/offline_unified_vertex_motion.hpp"
 #include "tests/support/nv12_picture.hpp"
 #include "tests/support/shaky_profiles.hpp"
@@ -24,7 +26,8 @@ class ShakingWindows {
         cv::RNG random(6);
         for (int i = 0; i < kFrames; ++i) {
             const auto shake = [&] { return random.uniform(-4, 5); };
-            const int swing = static_cast<int>(std::lround(10 * std::sin(3.14 * i / kFrames)));
+            const int swing =
+                static_cast<int>(std::lround(10 * std::sin(std::numbers::pi * i / kFrames)));
             corner_[Unit::kTractor].emplace_back(40 + shake(), 50 + shake());
             corner_[Unit::kTrailer].emplace_back(250 + shake() - swing, 54 + shake());
         }

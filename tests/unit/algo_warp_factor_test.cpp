@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "algo/warp_factor.hpp"
 
@@ -15,7 +16,7 @@ VertexField Waves(const Mesh& mesh, double amplitude_px) {
     VertexField field;
     for (int row = 0; row < Mesh::kVertexRows; ++row) {
         for (int col = 0; col < Mesh::kVertexCols; ++col) {
-            const double turn = 2 * M_PI * col / Mesh::kCols;  // closes on a ring
+            const double turn = 2 * std::numbers::pi * col / Mesh::kCols;  // closes on a ring
             field.col(Mesh::Index(row, col)) =
                 amplitude_px * Eigen::Vector2f(std::sin(turn + 0.4 * row), std::cos(turn));
         }
