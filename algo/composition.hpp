@@ -15,6 +15,7 @@ namespace hitchview::algo {
 struct Composition {
     PerUnit<Eigen::Matrix3d> M_canvas_view{
         {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()}};
+    /// On the view, before its pose: what is shown at view pixel y is read at y - view_offset(y).
     PerUnit<VertexField> view_offset{{VertexField::Zero(), VertexField::Zero()}};
     VertexField discrepancy = VertexField::Zero();  ///< see StitchingMotionField
     double kappa = 0.5;

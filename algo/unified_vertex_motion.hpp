@@ -4,64 +4,53 @@
 #include <memory>
 #include <optional>
 
-#include "algo/articulation.hpp"
 #include "algo/canvas_layout.hpp"
 #include "algo/composition.hpp"
 #include "algo/path_smoother.hpp"
+#include "algo/rig_motion.hpp"
 #include "algo/stitching_motion_field.hpp"
-#include "algo/task_runner.hpp"
-#include "algo/trailer_placement.hpp"
-#include "algo/unit_analysis.hpp"
+#include "algo/vertex_motion.hpp"
 
 namespace hitchview::algo {
 
 /// Unified vertex motion in its live form (facts 4.6): causal, fixed memory, one step per frame
 /// set. A rig has a tractor and perhaps a trailer.
-class UnifiedVertexMotion {
+class UnifiedVertexMotion final : public VertexMotion {
  public:
     /// `geometry[kTrailer]` may be empty. The canvas and both views have the same projection.
     UnifiedVertexMotion(const Projection& canvas,
                         const PerUnit<std::optional<UnitGeometry>>& geometry,
                         const UnifiedVertexMotionOptions& options);
-    ~UnifiedVertexMotion();
+    ~UnifiedVertexMotion() override;
 
     /// Before the first step: matches the two views of one frame set to lay them out on the canvas
     /// (plane) or to find the trailer (ring). True once that is done; else try the next set.
-    bool Prime(const RigFrames& frames, TaskRunner& runner);
+    bool Prime(const RigFrames& frames, TaskRunner& runner) override;
 
     /// One frame set in. `late` = frames.lookahead: the composition for the set given that many
     /// steps ago; empty while there is none yet.
-    const Composition* Step(const RigFrames& frames, TaskRunner& runner);
+    const Composition* Step(const RigFrames& frames, TaskRunner& runner) override;
     /// After the last set: the compositions that the lookahead still holds back, one per call.
-    const Composition* Flush();
+    const Composition* Flush() override;
     /// Forgets everything that crosses frames; the layout stays.
-    void Reset();
+    void Reset() override;
 
     [[nodiscard]] bool has_trailer() const { return trailer_view_.has_value(); }
 
  private:
-    struct Record;
-    class Guidance;
-
-    void Analyse(const RigFrames& frames, TaskRunner& runner, Record& record);
-    void MatchUnits(Record& record);
-    bool AcquireTrailer(Record& record);
-    [[nodiscard]] bool LongUnmatched() const;
-    void Guide(Record& record);
-    void UpdateSeams(Record& record);
-
+    void UpdateGuess();
     const Composition* Emit(std::int64_t index);
     void Stabilise(std::int64_t index, Unit unit);
-    void PlaceTrailer(const Record& record);
-    void UpdateViewOffset(const Record& record, Unit unit);
-    void UpdateStitching(const Record& record, const Eigen::Matrix3d& M_canvas_early);
-    void Compose(const Record& record);
+    void PlaceTrailer(const RigMotion& record);
+    void UpdateViewOffset(const RigMotion& record, Unit unit);
+    void UpdateStitching(const RigMotion& record, const Eigen::Matrix3d& M_canvas_early);
+    void Compose(const RigMotion& record);
     [[nodiscard]] PathSmoother::Window Window(std::int64_t index, Unit unit) const;
     [[nodiscard]] Eigen::Vector2d OnCanvas(Unit unit, const Eigen::Vector2d& view_px) const;
     void LayOut();
 
-    [[nodiscard]] Record& At(std::int64_t index);
-    [[nodiscard]] const Record& At(std::int64_t index) const;
+    [[nodiscard]] RigMotion& At(std::int64_t index);
+    [[nodiscard]] const RigMotion& At(std::int64_t index) const;
     [[nodiscard]] const Projection& view(Unit unit) const {
         return unit == Unit::kTractor ? tractor_view_ : *trailer_view_;
     }
@@ -72,10 +61,8 @@ class UnifiedVertexMotion {
     std::optional<Projection> trailer_view_;
     UnifiedVertexMotionOptions options_;
 
-    PerUnit<std::unique_ptr<UnitAnalysis>> analysis_;
-    std::unique_ptr<ClassicalMatcher> matcher_;
-    std::unique_ptr<TrailerPlacement> placement_;
-    std::unique_ptr<ArticulationEstimator> articulation_;  // ring only
+    RigMotionEstimator estimator_;
+    MatchGuess guess_;
     StitchingMotionField stitching_;
     PerUnit<std::unique_ptr<PathSmoother>> smoother_;
     std::unique_ptr<PathSmoother> hitch_smoother_;
@@ -88,13 +75,11 @@ class UnifiedVertexMotion {
     double hitch_scale_ = 1;
     bool hitch_known_ = false;
     PerUnit<VertexField> view_offset_{{VertexField::Zero(), VertexField::Zero()}};
-    PerOverlap<int> frames_unmatched_;
 
     static constexpr int kRecords = 16;
-    std::unique_ptr<std::array<Record, kRecords>> records_;
+    std::unique_ptr<std::array<RigMotion, kRecords>> records_;
     std::int64_t analysed_ = 0;  // frame sets seen
     std::int64_t emitted_ = 0;
-    ViewPairs view_pairs_;
     CanvasPairs canvas_pairs_;
     Composition composition_;
 };

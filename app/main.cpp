@@ -111,6 +111,13 @@ int main(int argc, char** argv) {
     AddRunOptions(replay_verb, replay);
     replay_verb.add_flag("--realtime", replay.run.realtime,
                          "one frame set per period; late ones are dropped");
+    replay_verb.add_flag("--offline", replay.run.offline,
+                         "read the recordings twice: steadiest, needs memory for all of them");
+    replay_verb
+        .add_option("--coupling", replay.coupling,
+                    "with --offline: how stitching and stabilisation are joined; literal (as the "
+                    "paper states it: stitched, not steadied) or corrected (default)")
+        ->check(CLI::IsMember({"literal", "corrected"}));
     replay_verb.add_flag("--publish", replay.run.publish, "publish over LCM as the rig file says");
 
     ReplayOptions run;

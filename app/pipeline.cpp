@@ -18,6 +18,12 @@ algo::CameraFrame Borrow(const hal::FrameLease& lease) {
             .chroma_stride_bytes = view.planes[1].stride_bytes};
 }
 
+hal::FrameFormat CanvasFormat(const algo::Projection& canvas) {
+    return {canvas.width_px, canvas.height_px, hal::PixelFormat::kI420, hal::Range::kFull};
+}
+
+}  // namespace
+
 algo::RigFrames Borrow(const FrameSet& set) {
     algo::RigFrames frames;
     for (const algo::Unit unit : algo::kUnits) {
@@ -27,18 +33,10 @@ algo::RigFrames Borrow(const FrameSet& set) {
     return frames;
 }
 
-hal::FrameFormat CanvasFormat(const algo::Projection& canvas) {
-    return {canvas.width_px, canvas.height_px, hal::PixelFormat::kI420, hal::Range::kFull};
-}
-
-}  // namespace
-
-Pipeline::Pipeline(const RigGeometry& rig, const algo::UnifiedVertexMotionOptions& options,
-                   algo::TaskRunner& runner)
+Pipeline::Pipeline(const RigGeometry& rig, algo::VertexMotion& motion, algo::TaskRunner& runner)
     : rig_(rig),
-      lookahead_(options.lookahead_frames),
       runner_(runner),
-      motion_(rig_.canvas, rig_.units, options),
+      motion_(motion),
       map_(rig_.canvas, rig_.units, algo::SeamOptions{}),
       format_(CanvasFormat(rig.canvas)),
       panorama_(hal::FrameBytes(format_)),

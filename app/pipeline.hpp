@@ -7,7 +7,7 @@
 #include "algo/composed_map.hpp"
 #include "algo/exposure_gains.hpp"
 #include "algo/panorama_renderer.hpp"
-#include "algo/unified_vertex_motion.hpp"
+#include "algo/vertex_motion.hpp"
 #include "app/frame_set.hpp"
 #include "app/rig_geometry.hpp"
 #include "app/stage_times.hpp"
@@ -23,14 +23,17 @@ struct ShownPanorama {
     const algo::Composition* composition = nullptr;
 };
 
+/// The pictures of a frame set, borrowed from its leases.
+algo::RigFrames Borrow(const FrameSet& set);
+
 /// Frame sets in, panoramas out: estimation, composed map, gains, rendering. Memory is taken at
 /// construction. Thread: one.
 class Pipeline {
  public:
-    Pipeline(const RigGeometry& rig, const algo::UnifiedVertexMotionOptions& options,
-             algo::TaskRunner& runner);
+    /// `motion`: of the same rig, holds back at most kMaxLookahead sets.
+    Pipeline(const RigGeometry& rig, algo::VertexMotion& motion, algo::TaskRunner& runner);
 
-    /// Before the first frame set is shown; see UnifiedVertexMotion::Prime.
+    /// Before the first frame set is shown; see VertexMotion::Prime.
     bool Prime(const FrameSet& set);
     /// After Prime: what was seen counts as nothing, the layout stays.
     void Start();
@@ -54,9 +57,8 @@ class Pipeline {
     algo::PanoramaPlanes Planes(std::vector<std::uint8_t>& memory) const;
 
     RigGeometry rig_;
-    int lookahead_;
     algo::TaskRunner& runner_;
-    algo::UnifiedVertexMotion motion_;
+    algo::VertexMotion& motion_;
     algo::ComposedMap map_;
     algo::ExposureGains gains_;
     algo::PanoramaRenderer renderer_;

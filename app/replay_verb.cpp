@@ -44,12 +44,24 @@ nlohmann::json MeasureQuality(const RigConfig& config, const std::filesystem::pa
     return nlohmann::json::parse(in, nullptr, false);
 }
 
+/// Why the options contradict each other; empty if they do not.
+std::string Contradiction(const ReplayOptions& options) {
+    if (options.run.offline && options.run.realtime)
+        return "--offline reads all of a recording before it shows a frame: not with --realtime";
+    if (options.run.offline && options.run.lookahead_frames)
+        return "--offline sees all frames ahead: not with --lookahead";
+    if (options.coupling && !options.run.offline) return "--coupling needs --offline";
+    return "";
+}
+
 }  // namespace
 
 int ReplayVerb(const ReplayOptions& options, const std::atomic<bool>& stop) {
+    if (const std::string why = Contradiction(options); !why.empty()) return Fail(kWrongUse, why);
     const auto config = LoadRigConfig(options.rig);
     if (!config) return Fail(kWrongUse, config.error());
     RunOptions run = options.run;
+    if (options.coupling == "literal") run.coupling = algo::Coupling::kLiteral;
     run.write_video = run.write_video || options.metrics;
     run.write_views = run.write_views || options.metrics;
     if (run.out.empty() && (run.write_video || run.write_views)) {

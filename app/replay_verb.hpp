@@ -7,7 +7,8 @@ namespace hitchview::app {
 struct ReplayOptions {
     std::filesystem::path rig{};
     RunOptions run{};
-    bool metrics = false;  ///< track the written views again and measure them
+    std::optional<std::string> coupling{};  ///< literal or corrected; offline only
+    bool metrics = false;                   ///< track the written views again and measure them
 };
 
 /// `hitchview replay` and `hitchview run`. Returns the exit code: 0 done, 2 rig or options are

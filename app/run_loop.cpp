@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "algo/offline_unified_vertex_motion.hpp"
 #include "app/board.hpp"
 #include "app/frame_synchronizer.hpp"
 #include "app/run_outputs.hpp"
@@ -54,6 +55,23 @@ std::string CameraFailure(hal::Error error) {
     return std::string("a camera gives no more frames: ") + hal::ToString(error);
 }
 
+/// The estimation of a run.
+struct Motion {
+    std::unique_ptr<algo::VertexMotion> any;
+    algo::OfflineUnifiedVertexMotion* offline = nullptr;  ///< the same, if it needs a first pass
+};
+
+Motion MakeMotion(const RigGeometry& rig, const algo::UnifiedVertexMotionOptions& motion,
+                  const RunOptions& options) {
+    if (!options.offline)
+        return {std::make_unique<algo::UnifiedVertexMotion>(rig.canvas, rig.units, motion)};
+    auto offline = std::make_unique<algo::OfflineUnifiedVertexMotion>(
+        rig.canvas, rig.units,
+        algo::OfflineOptions{.motion = motion, .coupling = options.coupling});
+    algo::OfflineUnifiedVertexMotion* const first_pass = offline.get();
+    return {std::move(offline), first_pass};
+}
+
 /// Looks at the first frame sets; the cameras are used up by that.
 hal::Checked<hal::Done> Prime(Board& board, Pipeline& pipeline) {
     FrameSynchronizer synchronizer(board.cameras());
@@ -65,6 +83,38 @@ hal::Checked<hal::Done> Prime(Board& board, Pipeline& pipeline) {
     }
     pipeline.Start();
     return hal::Done{};
+}
+
+bool Limited(const RunOptions& options, std::uint64_t taken) {
+    return options.frames && taken >= static_cast<std::uint64_t>(*options.frames);
+}
+
+/// The first pass over the recordings; the cameras are used up by that.
+hal::Checked<hal::Done> Learn(Board& board, algo::OfflineUnifiedVertexMotion& motion,
+                              const RunOptions& options, algo::TaskRunner& workers,
+                              const std::atomic<bool>& stop) {
+    FrameSynchronizer synchronizer(board.cameras());
+    for (std::uint64_t taken = 0; !stop && !Limited(options, taken); ++taken) {
+        const auto set = synchronizer.WaitSet();
+        if (!set && set.error() == hal::Error::kEndOfStream) break;
+        if (!set) return CameraFailure(set.error());
+        motion.Learn(Borrow(set.value()), workers);
+    }
+    motion.Solve();
+    return hal::Done{};
+}
+
+/// What is known of a run before its first frame.
+RunSummary EmptySummary(const RigConfig& config, const Board& board, const RigGeometry& rig,
+                        const std::optional<calib::RigCalibration>& calibration) {
+    RunSummary summary;
+    summary.period_ms = std::chrono::duration<double, std::milli>(board.period()).count();
+    if (calibration) summary.calibration_id = calibration->id();
+    summary.ring = rig.canvas.IsRing();
+    for (const algo::Unit unit : algo::kUnits) {
+        summary.cameras[unit] = static_cast<int>(config.units[unit].cameras.size());
+    }
+    return summary;
 }
 
 /// Drives one opened rig; see RunRig.
@@ -83,8 +133,7 @@ class Run {
         start_ = board_.clock().Now();
         outputs_.Start(start_);
         std::uint64_t taken = 0;
-        while (!stop &&
-               (!options_.frames || taken < static_cast<std::uint64_t>(*options_.frames))) {
+        while (!stop && !Limited(options_, taken)) {
             auto set = synchronizer.WaitSet();
             if (!set && set.error() == hal::Error::kEndOfStream) break;
             if (!set) return CameraFailure(set.error());
@@ -156,27 +205,28 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
                                 const std::atomic<bool>& stop, const ShownHook& hook) {
     auto calibration = Calibration(config);
     if (!calibration) return calibration.error();
-    const algo::UnifiedVertexMotionOptions motion = MotionOptions(config, options);
-    const int held = motion.lookahead_frames + 2;
+    const algo::UnifiedVertexMotionOptions motion_options = MotionOptions(config, options);
+    const int held = motion_options.lookahead_frames + 2;
     auto board = Board::Open(config, held);
     if (!board) return board.error();
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
     if (!rig) return rig.error();
 
     WorkerPool workers(options.workers.value_or(config.workers));
-    Pipeline pipeline(rig.value(), motion, workers);
+    const Motion motion = MakeMotion(rig.value(), motion_options, options);
+    Pipeline pipeline(rig.value(), *motion.any, workers);
     if (const auto primed = Prime(**board, pipeline); !primed) return primed.error();
     // A recording starts again from its first frame.
     board = Board::Open(config, held);
     if (!board) return board.error();
-
-    RunSummary summary;
-    summary.period_ms = std::chrono::duration<double, std::milli>((*board)->period()).count();
-    if (*calibration) summary.calibration_id = (*calibration)->id();
-    summary.ring = rig.value().canvas.IsRing();
-    for (const algo::Unit unit : algo::kUnits) {
-        summary.cameras[unit] = static_cast<int>(config.units[unit].cameras.size());
+    if (motion.offline != nullptr) {
+        if (const auto learnt = Learn(**board, *motion.offline, options, workers, stop); !learnt)
+            return learnt.error();
+        board = Board::Open(config, held);
+        if (!board) return board.error();
     }
+
+    RunSummary summary = EmptySummary(config, **board, rig.value(), *calibration);
     if (const auto made = MakeFolder(options.out); !made) return made.error();
     auto outputs = RunOutputs::Open(config, options, **board, summary, pipeline.format());
     if (!outputs) return outputs.error();

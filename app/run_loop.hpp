@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "algo/paper_stages.hpp"
 #include "app/config.hpp"
 #include "app/pipeline.hpp"
 
@@ -16,10 +17,13 @@ struct RunOptions {
     std::optional<int> frames{};  ///< at most so many frame sets
     std::optional<int> lookahead_frames{};  ///< instead of the rig file's
     std::optional<int> workers{};           ///< instead of the rig file's
-    bool realtime = false;                  ///< one frame set per period; late ones are dropped
-    bool write_video = false;               ///< out/panorama.avi
-    bool write_views = false;               ///< out/tractor.avi, out/trailer.avi
-    bool publish = false;                   ///< over LCM
+    bool offline =
+        false;  ///< recordings are read twice, and all of them is seen before any is shown
+    algo::Coupling coupling = algo::Coupling::kCorrected;  ///< offline
+    bool realtime = false;     ///< not offline; one frame set per period; late ones are dropped
+    bool write_video = false;  ///< out/panorama.avi
+    bool write_views = false;  ///< out/tractor.avi, out/trailer.avi
+    bool publish = false;      ///< over LCM
 };
 
 /// The articulation over a run, as the images told it.

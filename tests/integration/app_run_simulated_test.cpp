@@ -120,6 +120,22 @@ TEST_F(SimulatedRunTest, PanoramasOfNeighbouringSetsDiffer) {
     EXPECT_FALSE(kept[1].bytes == kept[2].bytes);
 }
 
+TEST_F(SimulatedRunTest, ARingIsMadeOfflineToo) {
+    for (const auto coupling : {algo::Coupling::kCorrected, algo::Coupling::kLiteral}) {
+        const auto kept = RunAndKeep(Rig(), {.offline = true, .coupling = coupling});
+        ASSERT_EQ(kept.size(), kFrames);
+        for (std::size_t i = 0; i < kept.size(); ++i) EXPECT_EQ(kept[i].sequence, i);
+        const KeptPanorama& last = kept.back();
+        EXPECT_LT(std::count(last.bytes.begin(), last.bytes.begin() + 1024 * 180, 0),
+                  1024 * 180 / 2);
+        for (const algo::Unit unit : algo::kUnits) {
+            EXPECT_TRUE(last.composition.M_canvas_view[unit].isUnitary(1e-6)) << "no rotation";
+        }
+        EXPECT_EQ(last.composition.discrepancy.col(algo::Mesh::Index(4, 0)),
+                  last.composition.discrepancy.col(algo::Mesh::Index(4, algo::Mesh::kCols)));
+    }
+}
+
 class LookaheadTest : public SimulatedRunTest, public testing::WithParamInterface<int> {};
 
 TEST_P(LookaheadTest, EachFrameSetIsShownOnceAndInOrder) {

@@ -6,6 +6,7 @@
 #include "algo/exposure_gains.hpp"
 #include "algo/feature_tracker.hpp"
 #include "algo/panorama_renderer.hpp"
+#include "algo/paper_weights_smoother.hpp"
 #include "algo/path_smoother.hpp"
 #include "algo/semi_surround_view.hpp"
 #include "algo/stabilization_motion_field.hpp"
@@ -105,6 +106,18 @@ TEST_F(HeapTest, ArticulationTakesNoMemory) {
     EXPECT_TRUE(estimate);
     EXPECT_EQ(HeapCallsOf([&] { estimate = articulation->Step({}, features); }), 0U);
     EXPECT_TRUE(estimate);
+}
+
+TEST_F(HeapTest, CausalPaperWeightsTakeNoMemory) {
+    const ProfileSmoothingOptions options;
+    const PaperWeightsSmoother smoother(options, 3);
+    OutputHistory history(options.radius_frames);
+    const std::array<Eigen::Vector3d, 3> ahead{};
+    EXPECT_EQ(HeapCallsOf([&] {
+                  history.Move({1, 2, 3});
+                  history.Push(smoother.Next({history.outputs(), ahead}));
+              }),
+              0U);
 }
 
 TEST_F(HeapTest, TrackingTakesNoMemory) {

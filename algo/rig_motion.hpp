@@ -1,0 +1,87 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "algo/articulation.hpp"
+#include "algo/task_runner.hpp"
+#include "algo/trailer_placement.hpp"
+#include "algo/unified_options.hpp"
+#include "algo/unit_analysis.hpp"
+
+namespace hitchview::algo {
+
+/// What one frame set tells of the motion within the units and between them.
+struct RigMotion {
+    PerUnit<IntraMotion> intra;
+    PerOverlap<InterFeatures> inter;  ///< px of the views
+    Eigen::Matrix3d M_tractor_trailer = Eigen::Matrix3d::Identity();
+    bool placed = false;  ///< false: M_tractor_trailer means nothing
+    PerOverlap<SeamState> seams{{SeamState::kNoOverlap, SeamState::kNoOverlap}};
+    PerOverlap<int> matches;
+    PerOverlap<int> candidates;
+    PerUnit<int> features;
+    std::optional<Articulation> articulation;  ///< ring only
+};
+
+/// Where both views are thought to lie on the canvas when features are matched between them.
+struct MatchGuess {
+    Eigen::Matrix3d M_canvas_tractor = Eigen::Matrix3d::Identity();
+    /// On the canvas: from where the matched placement puts the trailer to where it is shown.
+    Eigen::Matrix3d M_shown_placed = Eigen::Matrix3d::Identity();
+    VertexField discrepancy = VertexField::Zero();  ///< left there; see StitchingMotionField
+};
+
+/// Frames in, motion out: the estimation that the live and the offline form share. Analyses each
+/// unit alone, places the trailer's view on the tractor's and matches features in the overlaps.
+class RigMotionEstimator {
+ public:
+    /// `geometry[kTrailer]` may be empty. The canvas and both views have the same projection.
+    RigMotionEstimator(const Projection& canvas,
+                       const PerUnit<std::optional<UnitGeometry>>& geometry,
+                       const UnifiedVertexMotionOptions& options);
+    ~RigMotionEstimator();
+
+    /// Before the first Estimate: looks for the trailer in one frame set, from nothing. True if it
+    /// was found or need not be.
+    bool Prime(const RigFrames& frames, TaskRunner& runner);
+    /// The frame set after the one before.
+    void Estimate(const RigFrames& frames, const MatchGuess& guess, TaskRunner& runner,
+                  RigMotion& motion);
+    /// Forgets everything that crosses frames; the placement stays.
+    void Reset();
+
+    [[nodiscard]] int units() const { return placement_ ? 2 : 1; }
+    /// Null as long as the trailer was not found.
+    [[nodiscard]] const Eigen::Matrix3d* M_tractor_trailer() const {
+        return placement_ && placement_->acquired() ? &placement_->M_tractor_trailer() : nullptr;
+    }
+
+ private:
+    class Guidance;
+
+    void Analyse(const RigFrames& frames, TaskRunner& runner, RigMotion& motion);
+    void MatchUnits(const MatchGuess& guess, RigMotion& motion);
+    bool AcquireTrailer(RigMotion& motion);
+    [[nodiscard]] bool LongUnmatched() const;
+    void Guide(const MatchGuess& guess, RigMotion& motion);
+    void UpdateSeams(RigMotion& motion);
+    [[nodiscard]] const Projection& view(Unit unit) const {
+        return unit == Unit::kTractor ? tractor_view_ : *trailer_view_;
+    }
+
+    Projection canvas_;
+    Projection tractor_view_;
+    std::optional<Projection> trailer_view_;
+    bool stitch_;
+    PerUnit<std::unique_ptr<UnitAnalysis>> analysis_;
+    std::unique_ptr<ClassicalMatcher> matcher_;
+    std::unique_ptr<TrailerPlacement> placement_;
+    std::unique_ptr<ArticulationEstimator> articulation_;  // ring only
+    PerOverlap<int> frames_unmatched_;
+    std::int64_t matched_ = 0;  // frame sets
+    ViewPairs view_pairs_;
+    std::unique_ptr<RigMotion> primed_;
+};
+
+}  // namespace hitchview::algo
