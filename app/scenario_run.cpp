@@ -1,8 +1,9 @@
-#include "app/scenario_run.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "algo/unified_vertex_motion.hpp"
+#include "algo/unified_vertex_motion.hpp"
 #include "app/scenario_frames.hpp"
 #include "app/scenario_meter.hpp"
 #include "app/scenario_pictures.hpp"
@@ -58,7 +59,8 @@ class Drive {
               std::min(options.frames.value_or(rig.options().frames), rig.options().frames)),
           workers_(options.workers),
           frames_(rig, options.lookahead_frames + 2, cache, workers_),
-          pipeline_(geometry, MotionOptions(options), workers_),
+          motion_(geometry.canvas, geometry.units, MotionOptions(options)),
+          pipeline_(geometry, motion_, workers_),
           meter_(rig, geometry),
           pictures_(pictures) {}
 
@@ -95,6 +97,7 @@ class Drive {
     int frames_to_show_;
     WorkerPool workers_;
     ScenarioFrames frames_;
+    algo::UnifiedVertexMotion motion_;
     Pipeline pipeline_;
     ScenarioMeter meter_;
     ScenarioPictures& pictures_;
