@@ -1,8 +1,8 @@
+#include "app/scenario_run.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "algo/unified_vertex_motion.hpp"
 #include "algo/unified_vertex_motion.hpp"
 #include "app/scenario_frames.hpp"
 #include "app/scenario_meter.hpp"
