@@ -8,7 +8,7 @@ namespace hitchview::algo {
 using Eigen::Vector2d;
 using Eigen::Vector2f;
 
-Vector2d Sample(const Mesh& mesh, const VertexField& field, const Vector2d& pixel) {
+MeshPlace Locate(const Mesh& mesh, const Vector2d& pixel) {
     const double x = mesh.ring ? WrapColumn(pixel.x(), mesh.width_px) : pixel.x();
     const double u =
         std::clamp((x - mesh.origin_px.x()) / mesh.cell_px.x(), 0.0, Mesh::kCols - 1e-6);
@@ -20,9 +20,15 @@ Vector2d Sample(const Mesh& mesh, const VertexField& field, const Vector2d& pixe
     const auto fy = static_cast<float>(v - row);
     const int i = Mesh::Index(row, col);
     const int below = i + Mesh::kVertexCols;
-    const Vector2f top = (1 - fx) * field.col(i) + fx * field.col(i + 1);
-    const Vector2f bottom = (1 - fx) * field.col(below) + fx * field.col(below + 1);
-    return ((1 - fy) * top + fy * bottom).cast<double>();
+    return {{i, i + 1, below, below + 1},
+            {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
+}
+
+Vector2d Sample(const Mesh& mesh, const VertexField& field, const Vector2d& pixel) {
+    const MeshPlace place = Locate(mesh, pixel);
+    Vector2f sum = Vector2f::Zero();
+    for (std::size_t k = 0; k < 4; ++k) sum += place.share[k] * field.col(place.vertex[k]);
+    return sum.cast<double>();
 }
 
 void CloseRing(const Mesh& mesh, VertexField& field) {

@@ -39,6 +39,20 @@ using VertexField = Eigen::Matrix<float, 2, Mesh::kVertices>;
 /// One number for every vertex.
 using VertexScalars = Eigen::Matrix<float, 1, Mesh::kVertices>;
 
+/// The cell that a pixel lies in: its corners (top left, top right, bottom left, bottom right) and
+/// their bilinear shares.
+struct MeshPlace {
+    std::array<int, 4> vertex;
+    std::array<float, 4> share;
+};
+/// Outside the mesh: the nearest place on its edge.
+MeshPlace Locate(const Mesh& mesh, const Eigen::Vector2d& pixel);
+
+/// The vertex of a ring's first column if `vertex` is the same one in the last column.
+inline int FirstColumnOfRing(int vertex) {
+    return vertex % Mesh::kVertexCols == Mesh::kCols ? vertex - Mesh::kCols : vertex;
+}
+
 /// `field` at `pixel`, bilinear; outside the mesh the nearest edge's value.
 Eigen::Vector2d Sample(const Mesh& mesh, const VertexField& field, const Eigen::Vector2d& pixel);
 

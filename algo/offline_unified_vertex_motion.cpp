@@ -171,7 +171,7 @@ CanvasPairs OfflineUnifiedVertexMotion::PairsOnCanvas(std::size_t frame, Overlap
     for (const InterFeature& f : learnt_[frame].inter[overlap]) {
         const CanvasPair pair{on_canvas(Unit::kTractor, f.tractor_px),
                               on_canvas(Unit::kTrailer, f.trailer_px)};
-        if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < kMaxParallax_px)
+        if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < MaxParallax_px(canvas_))
             pairs.push_back(pair);
     }
     return pairs;
@@ -179,7 +179,7 @@ CanvasPairs OfflineUnifiedVertexMotion::PairsOnCanvas(std::size_t frame, Overlap
 
 /// Of every frame: what is left between the two views where they are now.
 void OfflineUnifiedVertexMotion::Measure(Profiles& discrepancy, Profiles& confidence) const {
-    OverlapDiscrepancy meter(canvas_, StitchingOptions(canvas_, options_.motion.kappa));
+    OverlapDiscrepancy meter(canvas_, DiscrepancyOptions(canvas_, options_.motion.kappa));
     for (std::size_t i = 0; i < learnt_.size(); ++i) {
         MeasuredDiscrepancy measured;
         for (const Overlap overlap : kOverlaps) meter.Measure(PairsOnCanvas(i, overlap), measured);

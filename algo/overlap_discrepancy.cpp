@@ -7,7 +7,7 @@ namespace hitchview::algo {
 using Eigen::Vector2d;
 
 OverlapDiscrepancy::OverlapDiscrepancy(const Projection& canvas,
-                                       const StitchingMotionFieldOptions& options)
+                                       const OverlapDiscrepancyOptions& options)
     : canvas_(canvas), mesh_(canvas), options_(options), homography_(options.robust) {
     options_.propagation.shrink_votes = 0;  // few votes are less confidence, not a smaller motion
 }

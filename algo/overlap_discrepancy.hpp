@@ -1,8 +1,16 @@
 #pragma once
 
+#include "algo/magsac.hpp"
 #include "algo/stitching_motion_field.hpp"
 
 namespace hitchview::algo {
+
+struct OverlapDiscrepancyOptions {
+    double kappa = 0.5;           ///< who moves: 0 the trailer alone, 1 the tractor alone
+    int homography_inliers = 24;  ///< fewer pairs carry no global model
+    MagsacOptions robust{.max_sigma_px = 1.5, .max_iterations = 150};
+    PropagationOptions propagation{};
+};
 
 /// Discrepancy of one frame alone, at the vertices of the canvas; see StitchingMotionField for its
 /// meaning.
@@ -15,7 +23,7 @@ struct MeasuredDiscrepancy {
 /// what does not lie on it by the votes of the pairs around a vertex.
 class OverlapDiscrepancy {
  public:
-    OverlapDiscrepancy(const Projection& canvas, const StitchingMotionFieldOptions& options);
+    OverlapDiscrepancy(const Projection& canvas, const OverlapDiscrepancyOptions& options);
 
     /// Adds the pairs of one overlap to `measured`; where it has a value already, the more
     /// confident one stays.
@@ -37,7 +45,7 @@ class OverlapDiscrepancy {
 
     Projection canvas_;
     Mesh mesh_;
-    StitchingMotionFieldOptions options_;
+    OverlapDiscrepancyOptions options_;
     MagsacEstimator<HomographyModel, kMaxCanvasPairs> homography_;
 };
 

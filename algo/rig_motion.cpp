@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "algo/feature_mask.hpp"
+#include "algo/parallax_search.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -17,6 +18,13 @@ constexpr int kAcquireEvery = 6;
 constexpr int kFewestCandidates = 12;
 constexpr int kLockedInliers = 12;
 constexpr int kCoastFrames = 60;
+constexpr float kLatticePitch_px = 9;  // of the analysis view
+/// Parallax between the units' cameras, two metres apart, of what is farther than the alignment
+/// surface and of what is 8 m away.
+constexpr float kFarthest_rad = -0.018F;
+constexpr float kNearest_rad = 0.22F;
+constexpr float kLatticeCorrelation = 0.8F;
+constexpr float kLatticeTravel_px = 2;  // a search along the row ends this near
 
 }  // namespace
 
@@ -24,12 +32,13 @@ constexpr int kCoastFrames = 60;
 class RigMotionEstimator::Guidance final : public Expectation {
  public:
     Guidance(const RigMotionEstimator& owner, const MatchGuess& guess, Overlap overlap,
-             int& candidates)
+             int& candidates, bool with_field = true)
         : owner_(owner),
           mesh_(owner.canvas_),
           guess_(guess),
           overlap_(overlap),
           candidates_(candidates),
+          with_field_(with_field),
           M_canvas_view_{{guess.M_canvas_tractor, guess.M_shown_placed * guess.M_canvas_tractor *
                                                       owner.placement_->M_tractor_trailer()}} {}
 
@@ -40,7 +49,8 @@ class RigMotionEstimator::Guidance final : public Expectation {
         const Matrix3d& M_canvas_other = M_canvas_view_[Other(unit)];
         const Vector2d canvas_px = owner_.canvas_.Pixel(M_canvas_unit * ray);
         if (!InOverlap(canvas_px)) return false;
-        const Vector2d e = Sample(mesh_, guess_.discrepancy, canvas_px);
+        const Vector2d e =
+            with_field_ ? Sample(mesh_, guess_.discrepancy, canvas_px) : Vector2d(Vector2d::Zero());
         const Vector2d there =
             unit == Unit::kTractor ? Vector2d(canvas_px + e) : Vector2d(canvas_px - e);
         const Unit opposite = Other(unit);
@@ -63,6 +73,7 @@ class RigMotionEstimator::Guidance final : public Expectation {
     const MatchGuess& guess_;
     Overlap overlap_;
     int& candidates_;
+    bool with_field_;
     PerUnit<Matrix3d> M_canvas_view_;
 };
 
@@ -87,6 +98,7 @@ RigMotionEstimator::RigMotionEstimator(const Projection& canvas,
                                                       ClassicalMatcherOptions{});
         placement_ = std::make_unique<TrailerPlacement>(tractor_view_, *trailer_view_,
                                                         PlacementOptions(canvas, a.scale()));
+        LayLattice();
         if (canvas.IsRing()) {
             articulation_ = std::make_unique<ArticulationEstimator>(
                 *geometry[Unit::kTractor], *geometry[Unit::kTrailer], ArticulationOptions{});
@@ -116,7 +128,7 @@ bool RigMotionEstimator::Prime(const RigFrames& frames, TaskRunner& runner) {
 void RigMotionEstimator::Estimate(const RigFrames& frames, const MatchGuess& guess,
                                   TaskRunner& runner, RigMotion& motion) {
     Analyse(frames, runner, motion);
-    if (placement_ && stitch_) MatchUnits(guess, motion);
+    if (placement_ && stitch_) MatchUnits(guess, runner, motion);
 }
 
 void RigMotionEstimator::Analyse(const RigFrames& frames, TaskRunner& runner, RigMotion& motion) {
@@ -127,14 +139,18 @@ void RigMotionEstimator::Analyse(const RigFrames& frames, TaskRunner& runner, Ri
     });
 }
 
-void RigMotionEstimator::MatchUnits(const MatchGuess& guess, RigMotion& motion) {
+void RigMotionEstimator::MatchUnits(const MatchGuess& guess, TaskRunner& runner,
+                                    RigMotion& motion) {
     placement_->Predict(motion.intra);
-    for (const Overlap overlap : kOverlaps) motion.inter[overlap].clear();
+    for (const Overlap overlap : kOverlaps) {
+        motion.inter[overlap].clear();
+        motion.dense[overlap].clear();
+    }
     const bool lost = !placement_->acquired() || LongUnmatched();
     if (lost && matched_ % kAcquireEvery == 0) {
         AcquireTrailer(motion);
     } else if (placement_->acquired()) {
-        Guide(guess, motion);
+        Guide(guess, runner, motion);
     }
     UpdateSeams(motion);
     motion.M_tractor_trailer = placement_->M_tractor_trailer();
@@ -149,25 +165,87 @@ bool RigMotionEstimator::LongUnmatched() const {
                        [](int frames) { return frames >= kCoastFrames; });
 }
 
-void RigMotionEstimator::Guide(const MatchGuess& guess, RigMotion& motion) {
-    const PerUnit<MatchView> views{
+void RigMotionEstimator::Guide(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion) {
+    runner.Run(static_cast<int>(kOverlaps.size()),
+               [&](int i) { GuideOverlap(guess, kOverlaps[static_cast<std::size_t>(i)], motion); });
+    // Corners gather on near things; the lattice covers what is far just as well.
+    placement_->Correct(canvas_.IsRing() ? motion.dense : motion.inter);
+}
+
+void RigMotionEstimator::GuideOverlap(const MatchGuess& guess, Overlap overlap, RigMotion& motion) {
+    PerUnit<MatchView> views{
         {analysis_[Unit::kTractor]->match_view(), analysis_[Unit::kTrailer]->match_view()}};
-    for (const Overlap overlap : kOverlaps) {
-        motion.candidates[overlap] = 0;
-        matcher_->Guide(views, Guidance{*this, guess, overlap, motion.candidates[overlap]},
-                        view_pairs_);
-        for (const ViewPair& pair : view_pairs_) {
-            motion.inter[overlap].push_back(
-                {analysis_[Unit::kTractor]->view().ToView(pair.tractor_px),
-                 analysis_[Unit::kTrailer]->view().ToView(pair.trailer_px)});
+    ViewPairs& pairs = view_pairs_[overlap];
+    int& candidates = motion.candidates[overlap];
+    candidates = 0;
+    matcher_->Guide(views, Guidance{*this, guess, overlap, candidates}, pairs);
+    ToViews(pairs, motion.inter[overlap]);
+    int asked = 0;
+    if (canvas_.IsRing()) {
+        SearchLattice(views, Guidance{*this, guess, overlap, asked},
+                      Guidance{*this, guess, overlap, asked, false}, overlap, pairs);
+    } else {
+        views[Unit::kTractor].features = lattice_;
+        views[Unit::kTrailer].features = {};
+        matcher_->Guide(views, Guidance{*this, guess, overlap, asked}, pairs);
+    }
+    ToViews(pairs, motion.dense[overlap]);
+}
+
+/// The trailer's cameras stand behind the tractor's, so what is nearer than the alignment surface
+/// lies farther forward in the trailer's view, which looks back: on the left that is to the left.
+void RigMotionEstimator::SearchLattice(const PerUnit<MatchView>& views, const Guidance& guidance,
+                                       const Guidance& surface, Overlap overlap,
+                                       ViewPairs& pairs) const {
+    pairs.clear();
+    const float sign = overlap == Overlap::kLeft ? -1.0F : 1.0F;
+    const auto focal_px =
+        static_cast<float>(analysis_[Unit::kTractor]->view().scale() * tractor_view_.focal_px);
+    const ParallaxRange range{sign * kFarthest_rad * focal_px, sign * kNearest_rad * focal_px};
+    PatchAlignmentOptions alignment;
+    alignment.max_travel_px = kLatticeTravel_px;
+    const MatchView& here = views[Unit::kTractor];
+    const MatchView& there = views[Unit::kTrailer];
+    for (const Vector2f& at : lattice_) {
+        Vector2f base;
+        Vector2f expected;
+        if (!surface.Expect(Unit::kTractor, at, base)) continue;
+        if (!guidance.Expect(Unit::kTractor, at, expected)) expected = base;
+        const auto found = SearchAlongRow(here.pyramid->level(0), there.pyramid->level(0), at, base,
+                                          expected, range);
+        if (!found) continue;
+        const auto match = AlignPatch(*here.pyramid, *there.pyramid, at, *found, 0, alignment);
+        if (!match || match->correlation < kLatticeCorrelation ||
+            !Allows(*there.mask, match->position_px)) {
+            continue;
+        }
+        if (!pairs.push_back({at, match->position_px})) return;
+    }
+}
+
+void RigMotionEstimator::ToViews(const ViewPairs& pairs, InterFeatures& features) const {
+    for (const ViewPair& pair : pairs) {
+        features.push_back({analysis_[Unit::kTractor]->view().ToView(pair.tractor_px),
+                            analysis_[Unit::kTrailer]->view().ToView(pair.trailer_px)});
+    }
+}
+
+/// The field needs to be known where no corners are, too.
+void RigMotionEstimator::LayLattice() {
+    const SemiSurroundView& view = analysis_[Unit::kTractor]->view();
+    for (float y = kLatticePitch_px / 2; y < static_cast<float>(view.height_px());
+         y += kLatticePitch_px) {
+        for (float x = kLatticePitch_px / 2; x < static_cast<float>(view.width_px());
+             x += kLatticePitch_px) {
+            if (Allows(view.mask(), {x, y})) lattice_.push_back({x, y});
         }
     }
-    placement_->Correct(motion.inter);
 }
 
 bool RigMotionEstimator::AcquireTrailer(RigMotion& motion) {
     const PerUnit<MatchView> views{
         {analysis_[Unit::kTractor]->match_view(), analysis_[Unit::kTrailer]->match_view()}};
+    ViewPairs& pairs = view_pairs_[Overlap::kLeft];
     const SemiSurroundView& tractor = analysis_[Unit::kTractor]->view();
     const SemiSurroundView& trailer = analysis_[Unit::kTrailer]->view();
     for (const Overlap overlap : kOverlaps) {
@@ -186,11 +264,8 @@ bool RigMotionEstimator::AcquireTrailer(RigMotion& motion) {
         } else if (overlap == Overlap::kLeft) {
             continue;
         }
-        matcher_->Acquire(views, regions, view_pairs_);
-        for (const ViewPair& pair : view_pairs_) {
-            motion.inter[overlap].push_back(
-                {tractor.ToView(pair.tractor_px), trailer.ToView(pair.trailer_px)});
-        }
+        matcher_->Acquire(views, regions, pairs);
+        ToViews(pairs, motion.inter[overlap]);
     }
     return placement_->Acquire(motion.inter);
 }

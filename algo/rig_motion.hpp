@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "algo/articulation.hpp"
 #include "algo/task_runner.hpp"
@@ -15,6 +16,7 @@ namespace hitchview::algo {
 struct RigMotion {
     PerUnit<IntraMotion> intra;
     PerOverlap<InterFeatures> inter;  ///< px of the views
+    PerOverlap<InterFeatures> dense;  ///< likewise, of lattice points: for the stitching field
     Eigen::Matrix3d M_tractor_trailer = Eigen::Matrix3d::Identity();
     bool placed = false;  ///< false: M_tractor_trailer means nothing
     PerOverlap<SeamState> seams{{SeamState::kNoOverlap, SeamState::kNoOverlap}};
@@ -61,10 +63,15 @@ class RigMotionEstimator {
     class Guidance;
 
     void Analyse(const RigFrames& frames, TaskRunner& runner, RigMotion& motion);
-    void MatchUnits(const MatchGuess& guess, RigMotion& motion);
+    void MatchUnits(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion);
     bool AcquireTrailer(RigMotion& motion);
     [[nodiscard]] bool LongUnmatched() const;
-    void Guide(const MatchGuess& guess, RigMotion& motion);
+    void Guide(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion);
+    void GuideOverlap(const MatchGuess& guess, Overlap overlap, RigMotion& motion);
+    void SearchLattice(const PerUnit<MatchView>& views, const Guidance& guidance,
+                       const Guidance& surface, Overlap overlap, ViewPairs& pairs) const;
+    void LayLattice();
+    void ToViews(const ViewPairs& pairs, InterFeatures& features) const;
     void UpdateSeams(RigMotion& motion);
     [[nodiscard]] const Projection& view(Unit unit) const {
         return unit == Unit::kTractor ? tractor_view_ : *trailer_view_;
@@ -80,7 +87,8 @@ class RigMotionEstimator {
     std::unique_ptr<ArticulationEstimator> articulation_;  // ring only
     PerOverlap<int> frames_unmatched_;
     std::int64_t matched_ = 0;  // frame sets
-    ViewPairs view_pairs_;
+    PerOverlap<ViewPairs> view_pairs_;
+    std::vector<Eigen::Vector2f> lattice_;  // px of the tractor's analysis view
     std::unique_ptr<RigMotion> primed_;
 };
 

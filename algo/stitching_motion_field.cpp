@@ -1,7 +1,6 @@
 #include "algo/stitching_motion_field.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace hitchview::algo {
 
@@ -10,26 +9,19 @@ using Eigen::Vector2f;
 
 namespace {
 
-constexpr float kFollowed_px = 1.0F;  ///< steps of this size and above get the whole gain
-constexpr float kNoiseGain = 0.2F;    ///< share of the gain for the smallest steps
+/// Rounds of easing steep edges one by one; what is left after them scales the whole field.
+constexpr int kEasingRounds = 12;
 
 }  // namespace
 
 StitchingMotionField::StitchingMotionField(const Projection& canvas,
                                            const StitchingMotionFieldOptions& options)
-    : canvas_(canvas), mesh_(canvas), options_(options), homography_(options.robust) {}
+    : canvas_(canvas), mesh_(canvas), options_(options), fit_(mesh_, options.fit) {}
 
 void StitchingMotionField::Reset() {
+    samples_.clear();
     field_.setZero();
-    support_.setZero();
-}
-
-Vector2d StitchingMotionField::Discrepancy(const CanvasPair& pair) const {
-    return canvas_.Difference(pair.trailer_px, pair.tractor_px);
-}
-
-Vector2d StitchingMotionField::MeetingPoint(const CanvasPair& pair) const {
-    return pair.tractor_px + options_.kappa * Discrepancy(pair);
+    confidence_.setZero();
 }
 
 void StitchingMotionField::Carry(const Eigen::Matrix3d& M_early_late) {
@@ -43,91 +35,25 @@ void StitchingMotionField::Carry(const Eigen::Matrix3d& M_early_late) {
 }
 
 void StitchingMotionField::Update(const CanvasPairs& pairs) {
-    if (pairs.count() < options_.propagation.min_votes) return;
-    FitDominantPlane(pairs);
-    SpreadResiduals(pairs);
-    Blend(pairs);
-}
-
-void StitchingMotionField::FitDominantPlane(const CanvasPairs& pairs) {
-    plane_known_ = false;
-    if (pairs.count() < options_.homography_inliers) return;
-    plane_origin_ = pairs[0].tractor_px;
-    pairs_.clear();
     for (const CanvasPair& pair : pairs) {
-        const Vector2d from = canvas_.Difference(MeetingPoint(pair), plane_origin_);
-        const Vector2d to = from + Discrepancy(pair);
-        pairs_.push_back({from.homogeneous(), to.homogeneous()});
-    }
-    const auto fit = homography_.Fit(pairs_);
-    if (!fit || fit->inliers < options_.homography_inliers) return;
-    plane_known_ = true;
-    H_plane_ = fit->model;
-}
-
-Vector2d StitchingMotionField::PlaneDiscrepancy(const Vector2d& at_px) const {
-    if (!plane_known_) return Vector2d::Zero();
-    const Vector2d at = canvas_.Difference(at_px, plane_origin_);
-    return (H_plane_ * at.homogeneous()).hnormalized() - at;
-}
-
-void StitchingMotionField::SpreadResiduals(const CanvasPairs& pairs) {
-    residuals_.clear();
-    for (const CanvasPair& pair : pairs) {
-        const Vector2d at = MeetingPoint(pair);
-        residuals_.push_back({at, Discrepancy(pair) - PlaneDiscrepancy(at)});
-    }
-    PropagateToVertices(mesh_, {residuals_.data(), residuals_.size()}, options_.propagation,
-                        residual_field_, &votes_);
-}
-
-void StitchingMotionField::Blend(const CanvasPairs&) {
-    for (int row = 0; row < Mesh::kVertexRows; ++row) {
-        for (int col = 0; col < Mesh::kVertexCols; ++col) {
-            const int i = Mesh::Index(row, col);
-            if (votes_(i) < static_cast<float>(options_.propagation.min_votes)) continue;
-            const float support =
-                votes_(i) / (votes_(i) + static_cast<float>(options_.propagation.shrink_votes));
-            const Vector2d measured =
-                PlaneDiscrepancy(mesh_.Vertex(row, col)) + residual_field_.col(i).cast<double>();
-            if (!(measured.norm() < options_.max_discrepancy_px)) continue;
-            const Vector2f innovation = measured.cast<float>() - field_.col(i);
-            // Small steps are matching noise and are averaged; large ones are the scene's and
-            // followed.
-            const float gain = std::clamp(innovation.norm() / kFollowed_px, kNoiseGain, 1.0F) *
-                               static_cast<float>(options_.gain) * support;
-            field_.col(i) += gain * innovation;
-            support_(i) = std::max(support_(i), support);
-        }
+        const Vector2d e = canvas_.Difference(pair.trailer_px, pair.tractor_px);
+        samples_.push_back({pair.tractor_px + options_.kappa * e, e});
     }
 }
 
 void StitchingMotionField::Extend() {
-    CloseRing(mesh_, field_);
-    const auto fade = static_cast<float>(options_.fade_per_cell);
-    for (int sweep = 0; sweep < options_.sweeps; ++sweep) {
-        for (int row = 0; row < Mesh::kVertexRows; ++row) {
-            for (int col = 0; col < Mesh::kVertexCols; ++col) {
-                const int i = Mesh::Index(row, col);
-                if (support_(i) > 0) continue;
-                const int left = mesh_.ring && col == 0 ? Mesh::kCols - 1 : std::max(col - 1, 0);
-                const int right =
-                    mesh_.ring && col == Mesh::kCols ? 1 : std::min(col + 1, Mesh::kCols);
-                const Vector2f sum = field_.col(Mesh::Index(row, left)) +
-                                     field_.col(Mesh::Index(row, right)) +
-                                     field_.col(Mesh::Index(std::max(row - 1, 0), col)) +
-                                     field_.col(Mesh::Index(std::min(row + 1, Mesh::kRows), col));
-                field_.col(i) = sum / (4 + fade);
-            }
-        }
-    }
-    CloseRing(mesh_, field_);
+    predicted_ = field_;
+    fit_.Fit({samples_.data(), samples_.size()}, predicted_, confidence_, field_, support_);
+    confidence_ = (static_cast<float>(options_.forgetting) * confidence_ + support_).cwiseMin(1.0F);
+    samples_.clear();
     GuardFolds();
-    support_ *= 0.8F;  // a vertex stays its own for a few frames without matches
-    support_ = (support_.array() < 0.2F).select(0.0F, support_);
 }
 
 void StitchingMotionField::GuardFolds() {
+    for (int round = 0; round < kEasingRounds; ++round) {
+        if (!Ease()) break;
+        CloseRing(mesh_, field_);
+    }
     float steepest = 0;
     for (int row = 0; row < Mesh::kVertexRows; ++row) {
         for (int col = 0; col < Mesh::kVertexCols; ++col) {
@@ -146,6 +72,34 @@ void StitchingMotionField::GuardFolds() {
     }
     const auto limit = static_cast<float>(options_.max_stretch);
     if (steepest > limit) field_ *= limit / steepest;
+}
+
+/// Draws the ends of steep edges together; false if there were none.
+bool StitchingMotionField::Ease() {
+    bool any = false;
+    for (int row = 0; row < Mesh::kVertexRows; ++row) {
+        for (int col = 0; col < Mesh::kVertexCols; ++col) {
+            const int i = Mesh::Index(row, col);
+            if (col < Mesh::kCols) {
+                any = EaseEdge(i, i + 1, static_cast<float>(mesh_.cell_px.x())) || any;
+            }
+            if (row < Mesh::kRows) {
+                const int below = i + Mesh::kVertexCols;
+                any = EaseEdge(i, below, static_cast<float>(mesh_.cell_px.y())) || any;
+            }
+        }
+    }
+    return any;
+}
+
+bool StitchingMotionField::EaseEdge(int a, int b, float cell_px) {
+    const float limit = static_cast<float>(options_.max_stretch) * cell_px;
+    const Vector2f difference = field_.col(b) - field_.col(a);
+    const Vector2f excess = difference - difference.cwiseMin(limit).cwiseMax(-limit);
+    if (excess.cwiseAbs().maxCoeff() <= 0.02F * limit) return false;
+    field_.col(a) += 0.5F * excess;
+    field_.col(b) -= 0.5F * excess;
+    return true;
 }
 
 }  // namespace hitchview::algo

@@ -17,9 +17,10 @@ constexpr double kDegree = std::numbers::pi / 180;
 /// may lag a bend or leave its place. What pulls back grows long before it.
 void BoundFreely(const Projection& canvas, const Projection& view, PathSmootherOptions& smoother) {
     if (view.IsRing()) {  // steering is slow and a vehicle's shake fast: no need to hold back long
-        smoother.wall = {8 * kDegree * view.focal_px, 3 * kDegree, 3 * kDegree};
-        smoother.weakest_pull = 1e-3;
-        smoother.strongest_pull = 0.1;
+        smoother.wall = {10 * kDegree * view.focal_px, 6 * kDegree, 6 * kDegree};
+        smoother.velocity_smoothing = 0.1;
+        smoother.weakest_pull = 3e-4;
+        smoother.strongest_pull = 1e-2;
         return;
     }
     const auto room = [](int canvas_px, int view_px) {  // that the canvas leaves beside the view
@@ -58,15 +59,25 @@ UnitAnalysisOptions AnalysisOptions(const Projection& view) {
     return options;
 }
 
+double MaxParallax_px(const Projection& canvas) {
+    constexpr double kPlane_px = 24;
+    constexpr double kRing_rad = 0.28;  // two metres between the cameras, 7 m to the thing
+    return canvas.IsRing() ? kRing_rad * canvas.focal_px : kPlane_px;
+}
+
 StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double kappa) {
     StitchingMotionFieldOptions options;
+    options.kappa = kappa;
+    options.fit.fade_px = 0.055 * canvas.width_px;
+    return options;
+}
+
+OverlapDiscrepancyOptions DiscrepancyOptions(const Projection& canvas, double kappa) {
+    OverlapDiscrepancyOptions options;
     options.kappa = kappa;
     options.propagation = {.radius_px = {0.05 * canvas.width_px, 0.2 * canvas.height_px},
                            .min_votes = 3,
                            .shrink_votes = 3};
-    options.max_discrepancy_px = kMaxParallax_px;
-    // Round a vehicle near and far things mix in an overlap, and single measurements jump.
-    if (canvas.IsRing()) options.gain = 0.3;
     return options;
 }
 
@@ -94,7 +105,8 @@ PathSmootherOptions HitchSmootherOptions(const Projection& view) {
 
 TrailerPlacementOptions PlacementOptions(const Projection& canvas, double analysis_scale) {
     TrailerPlacementOptions options;
-    if (canvas.IsRing()) options.gain = 0.3;
+    // The intra motions carry what is fast; what matching adds per frame is noise and parallax.
+    if (canvas.IsRing()) options.gain = 0.1;
     options.robust.max_sigma_px /= analysis_scale;
     options.acquire.max_sigma_px /= analysis_scale;
     return options;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "algo/overlap_discrepancy.hpp"
 #include "algo/path_smoother.hpp"
 #include "algo/stitching_motion_field.hpp"
 #include "algo/trailer_placement.hpp"
@@ -24,11 +25,13 @@ struct UnifiedVertexMotionOptions {
 };
 
 /// Pairs farther from the rigid placement than this are another thing, not parallax; canvas px.
-inline constexpr double kMaxParallax_px = 24;
+double MaxParallax_px(const Projection& canvas);
 
 /// The stages' options for pictures of this kind and size: one place for what was tuned.
 UnitAnalysisOptions AnalysisOptions(const Projection& view);
 StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double kappa);
+/// Of single frames of a recording.
+OverlapDiscrepancyOptions DiscrepancyOptions(const Projection& canvas, double kappa);
 TrailerPlacementOptions PlacementOptions(const Projection& canvas, double analysis_scale);
 /// Of one unit's own path.
 PathSmootherOptions StabilizerOptions(const Projection& canvas, const Projection& view,

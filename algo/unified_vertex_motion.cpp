@@ -27,12 +27,14 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
       tractor_view_(geometry[Unit::kTractor]->view()),
       options_(options),
       estimator_(canvas, geometry, options),
+      max_parallax_px_(MaxParallax_px(canvas)),
       stitching_(canvas, StitchingOptions(canvas, options.kappa)),
       records_(std::make_unique<std::array<RigMotion, kRecords>>()) {
     if (geometry[Unit::kTrailer]) trailer_view_ = geometry[Unit::kTrailer]->view();
     for (const Unit unit : kUnits) {
         if (!geometry[unit]) continue;
-        smoother_[unit] = std::make_unique<PathSmoother>(StabilizerOptions(canvas, view(unit), options));
+        smoother_[unit] =
+            std::make_unique<PathSmoother>(StabilizerOptions(canvas, view(unit), options));
     }
     if (has_trailer()) {
         hitch_smoother_ = std::make_unique<PathSmoother>(HitchSmootherOptions(tractor_view_));
@@ -205,19 +207,24 @@ Vector2d UnifiedVertexMotion::OnCanvas(Unit unit, const Vector2d& view_px) const
     return canvas_.Pixel(composition_.M_canvas_view[unit] * view(unit).Ray(moved));
 }
 
+void UnifiedVertexMotion::TakePairs(const InterFeatures& features) {
+    for (const InterFeature& f : features) {
+        const CanvasPair pair{OnCanvas(Unit::kTractor, f.tractor_px),
+                              OnCanvas(Unit::kTrailer, f.trailer_px)};
+        if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < max_parallax_px_) {
+            canvas_pairs_.push_back(pair);
+        }
+    }
+}
+
 void UnifiedVertexMotion::UpdateStitching(const RigMotion& record, const Matrix3d& M_canvas_early) {
     const Matrix3d M_canvas_late = composition_.M_canvas_view[Unit::kTractor];
     stitching_.Carry(M_canvas_early * record.intra[Unit::kTractor].M_late_early.inverse() *
                      M_canvas_late.inverse());
     for (const Overlap overlap : kOverlaps) {
         canvas_pairs_.clear();
-        for (const InterFeature& f : record.inter[overlap]) {
-            const CanvasPair pair{OnCanvas(Unit::kTractor, f.tractor_px),
-                                  OnCanvas(Unit::kTrailer, f.trailer_px)};
-            if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < kMaxParallax_px) {
-                canvas_pairs_.push_back(pair);
-            }
-        }
+        TakePairs(record.inter[overlap]);
+        TakePairs(record.dense[overlap]);
         stitching_.Update(canvas_pairs_);
     }
     stitching_.Extend();

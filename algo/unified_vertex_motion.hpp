@@ -44,6 +44,7 @@ class UnifiedVertexMotion final : public VertexMotion {
     void PlaceTrailer(const RigMotion& record);
     void UpdateViewOffset(const RigMotion& record, Unit unit);
     void UpdateStitching(const RigMotion& record, const Eigen::Matrix3d& M_canvas_early);
+    void TakePairs(const InterFeatures& features);
     void Compose(const RigMotion& record);
     [[nodiscard]] PathSmoother::Window Window(std::int64_t index, Unit unit) const;
     [[nodiscard]] Eigen::Vector2d OnCanvas(Unit unit, const Eigen::Vector2d& view_px) const;
@@ -63,6 +64,7 @@ class UnifiedVertexMotion final : public VertexMotion {
 
     RigMotionEstimator estimator_;
     MatchGuess guess_;
+    double max_parallax_px_;
     StitchingMotionField stitching_;
     PerUnit<std::unique_ptr<PathSmoother>> smoother_;
     std::unique_ptr<PathSmoother> hitch_smoother_;

@@ -15,7 +15,7 @@ inline constexpr std::size_t kMaxCameras = 8;
 /// The surface on which the cameras of a ring are aligned: what lies on it shows no parallax.
 /// A vertical cylinder round the hitch axis, cut off below by the ground.
 struct AlignmentSurface {
-    double radius_m = 100;     ///< of the cylinder
+    double radius_m = 1000;    ///< of the cylinder
     double viewpoint_m = 1.3;  ///< height of the panorama's viewpoint above the hitch point
     double ground_m = -0.4;    ///< height of the ground in the unit frame, below the viewpoint
 

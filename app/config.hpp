@@ -33,7 +33,7 @@ struct CanvasConfig {
     Projection projection = Projection::kPlane;
     Size size_px{};            ///< even, [64, 8192] x [64, 4096]; cylinder: 2048 x 360 unless given
     double horizon = 0.48;     ///< cylinder: share of the height above the horizon. [0, 1]
-    double radius_m = 100.0;   ///< cylinder: distance at which the calibration aligns. [1, 1000]
+    double radius_m = 1000.0;  ///< cylinder: distance at which the calibration aligns. [1, 1000]
     double viewpoint_m = 1.7;  ///< cylinder: height it is seen from, in the unit frame. [0.5, 10]
     double ground_m = -0.4;    ///< cylinder: height of the ground in the unit frame. [-3, 0]
 };

@@ -202,6 +202,34 @@ TEST(PathSmootherTest, TheOffsetNeverLeavesTheWall) {
     EXPECT_GT(LargestOffset(path, smooth), 6) << "a wall that is never near tests nothing";
 }
 
+TEST(PathSmootherTest, StiffWallsMakeThePlanTurnBeforeTheyAreReached) {
+    // With the whole swing seen ahead, a plan that knows its wall is smoother than a cut at it.
+    const Path path = PathOf(600, [](double s) { return 40 * std::sin(1.9 * s); });
+    PathSmootherOptions options{.lookahead_frames = kMaxLookahead,
+                                .weakest_pull = 1e-4,
+                                .strongest_pull = 1e-4,
+                                .wall = {10, 10, 5}};
+    const Path cut = Smooth(options, path);
+    options.wall_stiffness = 4;
+    const Path planned = Smooth(options, path);
+    EXPECT_LE(LargestOffset(path, planned), 10 + 1e-9);
+    EXPECT_GT(LargestOffset(path, cut), 9.9) << "a wall that is never reached tests nothing";
+    EXPECT_LT(Roughness(planned), 0.5 * Roughness(cut));
+}
+
+TEST(PathSmootherTest, ATurnTakesItsShareOfTheRoomToShift) {
+    const PathSmootherOptions options{.wall = {10, 10, 0.1}, .turn_takes_px = {60, 20}};
+    PathSmoother smoother(options);
+    PathSmoother::Window window;
+    window.ahead.fill(Vector3d::Zero());
+    window.motion.setZero();
+    window.early_output = window.earlier_output = {50, 50, 0.05};
+    const Vector3d offset = smoother.Next(window);
+    EXPECT_GT(offset.z(), 0.04);
+    EXPECT_NEAR(offset.x(), 10 - 60 * offset.z(), 1e-9);
+    EXPECT_NEAR(offset.y(), 10 - 20 * offset.z(), 1e-9);
+}
+
 TEST(PathSmootherTest, APathBackFromTheWallIsSmoothAgainAfterAWhile) {
     const PathSmootherOptions options{.wall = {12, 12, 6}};
     Path path = PathOf(900, [](double s) {

@@ -13,6 +13,8 @@ using Eigen::Vector2d;
 const Projection kPlane = Projection::Plane(1280, 400);
 const Projection kRing = Projection::Cylinder(1280, 240, 0.5);
 
+const FieldFitOptions kFit{.fade_px = 70};
+
 /// Pairs in columns x0..x1 whose trailer point lies at the tractor point + e(tractor point).
 template <typename Discrepancy>
 CanvasPairs PairsIn(const Projection& canvas, double x0, double x1, Discrepancy&& e) {
@@ -61,7 +63,7 @@ class EveryCanvasTest : public testing::TestWithParam<Projection> {
  protected:
     Projection canvas_ = GetParam();
     std::unique_ptr<StitchingMotionField> field_ =
-        std::make_unique<StitchingMotionField>(canvas_, StitchingMotionFieldOptions{});
+        std::make_unique<StitchingMotionField>(canvas_, StitchingMotionFieldOptions{.fit = kFit});
 };
 
 TEST_P(EveryCanvasTest, AConstantDiscrepancyIsFoundInTheOverlapAndFadesOutsideIt) {
@@ -185,7 +187,8 @@ TEST(StitchingMotionFieldTest, ADiscrepancyThatVariesOverTheOverlapIsFollowed) {
 }
 
 TEST(StitchingMotionFieldTest, OnARingTheOverlapMayLieAcrossTheEdge) {
-    const auto field = std::make_unique<StitchingMotionField>(kRing, StitchingMotionFieldOptions{});
+    const auto field =
+        std::make_unique<StitchingMotionField>(kRing, StitchingMotionFieldOptions{.fit = kFit});
     const Vector2d e{6, -3};
     Converge(*field, PairsIn(kRing, 1280 - 130, 1280 + 130, [&](const Vector2d&) { return e; }));
     for (const double x : {-0.4, 0.0, 30.0, 1250.0, 1279.4}) {
@@ -197,7 +200,7 @@ TEST(StitchingMotionFieldTest, OnARingTheOverlapMayLieAcrossTheEdge) {
 TEST(StitchingMotionFieldTest, WhereOnARingTheOverlapLiesDoesNotMatter) {
     const auto field_at = [](double x0) {
         const auto field =
-            std::make_unique<StitchingMotionField>(kRing, StitchingMotionFieldOptions{});
+            std::make_unique<StitchingMotionField>(kRing, StitchingMotionFieldOptions{.fit = kFit});
         Converge(*field, PairsIn(kRing, x0, x0 + 200, [](const Vector2d& at) {
             return Vector2d{5 + 0.01 * at.y(), 2};
         }));
@@ -215,11 +218,32 @@ TEST(StitchingMotionFieldTest, WhereOnARingTheOverlapLiesDoesNotMatter) {
     }
 }
 
-TEST(StitchingMotionFieldTest, ADiscrepancyBeyondTheLimitIsNoDiscrepancy) {
-    const auto field = std::make_unique<StitchingMotionField>(
-        kPlane, StitchingMotionFieldOptions{.max_discrepancy_px = 10});
-    Converge(*field, PairsIn(kPlane, 500, 760, [](const Vector2d&) { return Vector2d{14, 0}; }));
-    EXPECT_EQ(field->discrepancy(), VertexField::Zero());
+TEST(StitchingMotionFieldTest, CarriedAlongItIsTheSameFieldOfTheMovedScene) {
+    const auto field =
+        std::make_unique<StitchingMotionField>(kPlane, StitchingMotionFieldOptions{});
+    Converge(*field, PairsIn(kPlane, 400, 880, [](const Vector2d& p) {
+        return Vector2d{0.02 * (p.x() - 640), 3};
+    }));
+    const VertexField early = field->discrepancy();
+    Eigen::Matrix3d M_early_late = Eigen::Matrix3d::Identity();
+    M_early_late(0, 2) = -33;  // the scene has moved 33 px to the right
+    field->Carry(M_early_late);
+    for (double x = 480; x < 840; x += 20) {
+        const Vector2d now = Sample(field->mesh(), field->discrepancy(), {x, 200});
+        const Vector2d before = Sample(field->mesh(), early, {x - 33, 200});
+        EXPECT_LT((now - before).norm(), 0.1) << x;
+    }
+}
+
+TEST(StitchingMotionFieldTest, SteepEdgesAreEasedWhereTheyAreAndTheRestStays) {
+    const auto field =
+        std::make_unique<StitchingMotionField>(kPlane, StitchingMotionFieldOptions{});
+    Converge(*field, PairsIn(kPlane, 300, 980, [](const Vector2d& p) {
+        return Vector2d{p.x() < 640 ? -20.0 : 20.0, 0};
+    }));
+    EXPECT_NEAR(Sample(field->mesh(), field->discrepancy(), {400, 200}).x(), -20, 0.5);
+    EXPECT_NEAR(Sample(field->mesh(), field->discrepancy(), {880, 200}).x(), 20, 0.5);
+    EXPECT_GT(SmallestJacobian(*field, kPlane), 0);
 }
 
 }  // namespace
