@@ -24,21 +24,27 @@ void PrintRow(const std::string& part, const std::string& figure, const json& va
     const std::string text = value.is_null()           ? "-"
                              : value.is_number_float() ? std::to_string(value.get<double>())
                                                        : value.dump();
-    std::printf("%-14s %-22s %12s\n", part.c_str(), figure.c_str(), text.c_str());
+    std::printf("%-14s %-38s %12s\n", part.c_str(), figure.c_str(), text.c_str());
+}
+
+// `prefix`: what the names of the figures start with.
+void PrintFigures(const std::string& part, const json& figures, const std::string& prefix = "") {
+    for (const auto& [figure, value] : figures.items()) {
+        if (value.is_object()) {
+            PrintFigures(part, value, prefix + figure + ".");
+        } else {
+            PrintRow(part, prefix + figure, value);
+        }
+    }
 }
 
 void PrintTable(const json& report) {
     PrintRow("", "frames", report["frames"]);
-    for (const char* group : {"units", "seams"}) {
-        for (const auto& [part, figures] : report[group].items()) {
-            for (const auto& [figure, value] : figures.items()) {
-                PrintRow(group == std::string("seams") ? "seam " + part : part, figure, value);
-            }
-        }
+    for (const auto& [unit, figures] : report["units"].items()) PrintFigures(unit, figures);
+    for (const auto& [seam, figures] : report["seams"].items()) {
+        PrintFigures("seam " + seam, figures);
     }
-    for (const auto& [figure, value] : report["panorama"].items()) {
-        PrintRow("panorama", figure, value);
-    }
+    PrintFigures("panorama", report["panorama"]);
 }
 
 }  // namespace
@@ -50,10 +56,10 @@ int EvalVerb(const EvalOptions& options) {
                                   .progress = ShowProgress});
     std::fputc('\n', stderr);
     if (!report) return Fail(kWrongUse, report.error());
-    PrintTable(report.value());
+    PrintTable(report.value().figures);
     if (options.json.empty()) return kDone;
     std::ofstream file(options.json);
-    file << report.value().dump(2) << '\n';
+    file << report.value().figures.dump(2) << '\n';
     return file.flush() ? kDone : Fail(kMachineFailed, options.json + ": cannot be written");
 }
 

@@ -50,27 +50,53 @@ double SingularRatio(const cv::Matx22d& A) {
     return singular(1) / singular(0);
 }
 
+std::vector<cv::Point2f> Corners(cv::Size size) {
+    const cv::Size2f s(size);
+    return {{0, 0}, {s.width, 0}, {s.width, s.height}, {0, s.height}};
+}
+
+double KeptShare(const cv::Matx33d& H_out_in, cv::Size in, cv::Size out) {
+    std::vector<cv::Point2f> placed;
+    std::vector<cv::Point2f> inside;
+    cv::perspectiveTransform(Corners(in), placed, H_out_in);
+    if (cv::intersectConvexConvex(placed, Corners(out), inside) <= 0) return 0;
+    cv::perspectiveTransform(inside, inside, H_out_in.inv());
+    return std::min(1.0, cv::contourArea(inside) / in.area());
+}
+
+ViewFrame Figures(const cv::Matx33d& H_out_in, cv::Size in, cv::Size out, int frame) {
+    const cv::Matx22d A = H_out_in.get_minor<2, 2>(0, 0);
+    return {.frame = frame,
+            .cropping = std::min(1.0, 1 / std::sqrt(std::abs(cv::determinant(A)))),
+            .distortion = SingularRatio(A),
+            .distortion_eigen = EigenRatio(A),
+            .kept = KeptShare(H_out_in, in, out)};
+}
+
 }  // namespace
 
-void ViewMeter::Append(const cv::Mat& in_grey, const cv::Mat& out_grey) {
+void ViewMeter::Append(const cv::Mat& in_grey, const cv::Mat& out_grey, int frame) {
     const auto maybe_H = HomographyBetween(in_grey, out_grey);
     if (!maybe_H) {
         ++failed_;
         return;
     }
-    const cv::Matx22d A = maybe_H->get_minor<2, 2>(0, 0);
-    cropping_.push_back(std::min(1.0, 1 / std::sqrt(std::abs(cv::determinant(A)))));
-    distortion_.push_back(SingularRatio(A));
-    distortion_eigen_.push_back(EigenRatio(A));
+    frames_.push_back(Figures(*maybe_H, in_grey.size(), out_grey.size(), frame));
+    const ViewFrame& figures = frames_.back();
+    if (worst_.in_grey.empty() || figures.distortion < worst_.figures.distortion) {
+        worst_ = {figures, in_grey.clone(), out_grey.clone(), *maybe_H};
+    }
 }
 
 ViewScores ViewMeter::Scores() const {
-    return {.cropping_mean = Mean(cropping_),
-            .cropping_min = Quantile(cropping_, 0),
-            .distortion_min = Quantile(distortion_, 0),
-            .distortion_p01 = Quantile(distortion_, 0.01),
-            .distortion_eigen_min = Quantile(distortion_eigen_, 0),
-            .frames_measured = static_cast<int>(cropping_.size()),
+    const auto all = [&](double ViewFrame::*figure) { return Collect(frames_, figure); };
+    return {.cropping_mean = Mean(all(&ViewFrame::cropping)),
+            .cropping_min = Quantile(all(&ViewFrame::cropping), 0),
+            .distortion_min = Quantile(all(&ViewFrame::distortion), 0),
+            .distortion_p01 = Quantile(all(&ViewFrame::distortion), 0.01),
+            .distortion_eigen_min = Quantile(all(&ViewFrame::distortion_eigen), 0),
+            .kept_mean = Mean(all(&ViewFrame::kept)),
+            .kept_min = Quantile(all(&ViewFrame::kept), 0),
             .frames_failed = failed_};
 }
 

@@ -73,7 +73,7 @@ TEST(PathMeterTest, AStillVideoHasNoJerk) {
     const PathMeter meter = Measure([](int) { return Pose{}; });
     EXPECT_LT(meter.Scores().jerk_px.value(), 1e-6);
     EXPECT_LT(meter.Scores().rot_jerk_rad.value(), 1e-9);
-    EXPECT_FALSE(meter.Scores().stability);
+    EXPECT_FALSE(meter.Scores().stability.Mean());
     EXPECT_EQ(meter.repeated(), kFrames - 1);
     EXPECT_EQ(meter.lost(), 0);
 }
@@ -105,10 +105,10 @@ TEST(PathMeterTest, ASwayIsStableAndATrembleIsNot) {
         return meter.Scores();
     };
     const PathScores sway = stability(1.0);  // bin 2 of 60 frames
-    EXPECT_GT(sway.stability.value(), 0.97);
-    EXPECT_GT(sway.stability_detrended.value(), 0.97);
+    EXPECT_GT(sway.stability.Smaller().value(), 0.97);
+    EXPECT_GT(sway.stability_detrended.Smaller().value(), 0.97);
     EXPECT_EQ(sway.stability_frames, kFrames);
-    EXPECT_LT(stability(6.0).stability.value(), 0.1);
+    EXPECT_LT(stability(6.0).stability.Smaller().value(), 0.1);
 }
 
 TEST(PathMeterTest, HalfTheShakeIsHalfTheJitter) {
@@ -131,13 +131,13 @@ TEST(PathMeterTest, TooFewFramesGiveNoFigures) {
     PathMeter meter;
     meter.Append(tests::Texture(kView, 1));
     EXPECT_FALSE(meter.Scores().jerk_px);
-    EXPECT_FALSE(meter.Scores().stability);
+    EXPECT_FALSE(meter.Scores().stability.Mean());
 }
 
 ViewScores MeasureView(const cv::Matx33d& H_out_in, cv::Size out_size) {
     const cv::Mat in = tests::Texture(kView, 3);
     ViewMeter meter;
-    meter.Append(in, Look(in, H_out_in, out_size));
+    meter.Append(in, Look(in, H_out_in, out_size), 0);
     return meter.Scores();
 }
 
@@ -171,7 +171,7 @@ TEST(ViewMeterTest, AShearHasNoEigenvalueDistortionButASingularOne) {
 
 TEST(ViewMeterTest, UnrelatedPicturesAreNotMeasured) {
     ViewMeter meter;
-    meter.Append(tests::Texture(kView, 3), cv::Mat::zeros(kView, CV_8U));
+    meter.Append(tests::Texture(kView, 3), cv::Mat::zeros(kView, CV_8U), 0);
     EXPECT_FALSE(meter.Scores().cropping_mean);
     EXPECT_EQ(meter.Scores().frames_failed, 1);
 }
@@ -198,7 +198,7 @@ TEST(SeamMeterTest, EachOverlapHasItsOwnError) {
     const auto masks = OverlapMasks(layers.tractor, layers.trailer);
     algo::PerOverlap<SeamMeter> meters;
     for (const Overlap overlap : algo::kOverlaps) {
-        meters[overlap].Append(layers.tractor, layers.trailer, masks[overlap]);
+        meters[overlap].Append(layers.tractor, layers.trailer, masks[overlap], 0);
     }
     const SeamScores left = meters[Overlap::kLeft].Scores();
     EXPECT_NEAR(left.median_px.value(), 5, 0.15);
@@ -214,7 +214,7 @@ TEST(SeamMeterTest, TheWorstFrameIsTheWorstMean) {
     for (const double error_px : {0.5, 6.0, 1.0}) {
         const Layers layers({0, 0}, {error_px, 0});
         const auto masks = OverlapMasks(layers.tractor, layers.trailer);
-        meter.Append(layers.tractor, layers.trailer, masks[Overlap::kRight]);
+        meter.Append(layers.tractor, layers.trailer, masks[Overlap::kRight], 0);
     }
     EXPECT_NEAR(meter.Scores().worst_frame_px.value(), 6, 0.2);
 }
@@ -222,7 +222,7 @@ TEST(SeamMeterTest, TheWorstFrameIsTheWorstMean) {
 TEST(SeamMeterTest, WithoutAnOverlapNothingIsKnown) {
     const Layers layers({}, {});
     SeamMeter meter;
-    meter.Append(layers.tractor, layers.trailer, cv::Mat::zeros(layers.tractor.size(), CV_8U));
+    meter.Append(layers.tractor, layers.trailer, cv::Mat::zeros(layers.tractor.size(), CV_8U), 0);
     EXPECT_FALSE(meter.Scores().median_px);
     EXPECT_EQ(meter.Scores().measured_share, 0);
     EXPECT_FALSE(SeamMeter().Scores().measured_share);
@@ -255,7 +255,7 @@ TEST(EvaluateTest, OneUnitGivesItsFiguresAndNullForWhatCannotBeKnown) {
                                      .out = WriteVideo(folder / "out.avi", 1, 48)};
     const auto evaluated = Evaluate(options);
     ASSERT_TRUE(evaluated) << evaluated.error();
-    const nlohmann::json& report = evaluated.value();
+    const nlohmann::json& report = evaluated.value().figures;
     const nlohmann::json& tractor = report["units"]["tractor"];
     EXPECT_EQ(report["frames"], 48);
     EXPECT_NEAR(tractor["jitter_ratio"].get<double>(), 0.25, 0.02);
