@@ -3,6 +3,9 @@
 #include <cstdio>
 #include <fstream>
 
+#include "app/evaluation_report.hpp"
+#include "app/evaluation_summary.hpp"
+
 namespace hitchview::app {
 namespace {
 
@@ -47,20 +50,43 @@ void PrintTable(const json& report) {
     PrintFigures("panorama", report["panorama"]);
 }
 
+int Tabulate(const std::vector<std::string>& files) {
+    const auto summary = Summarise(files);
+    if (!summary) return Fail(kWrongUse, summary.error());
+    std::fputs(summary.value().table.c_str(), stdout);
+    return kDone;
+}
+
+// True also when there is no file to write.
+bool Write(const std::string& text, const std::string& path) {
+    if (path.empty()) return true;
+    std::ofstream file(path);
+    file << text;
+    return static_cast<bool>(file.flush());
+}
+
+int WriteFiles(const Quality& quality, const EvalOptions& options) {
+    if (!Write(quality.figures.dump(2) + '\n', options.json)) {
+        return Fail(kMachineFailed, options.json + ": cannot be written");
+    }
+    if (!options.html.empty() && !Write(HtmlReport(quality), options.html)) {
+        return Fail(kMachineFailed, options.html + ": cannot be written");
+    }
+    return kDone;
+}
+
 }  // namespace
 
 int EvalVerb(const EvalOptions& options) {
-    const auto report = Evaluate({.units = options.units,
-                                  .panorama = options.panorama,
-                                  .step = options.step,
-                                  .progress = ShowProgress});
+    if (!options.summary.empty()) return Tabulate(options.summary);
+    const auto quality = Evaluate({.units = options.units,
+                                   .panorama = options.panorama,
+                                   .step = options.step,
+                                   .progress = ShowProgress});
     std::fputc('\n', stderr);
-    if (!report) return Fail(kWrongUse, report.error());
-    PrintTable(report.value().figures);
-    if (options.json.empty()) return kDone;
-    std::ofstream file(options.json);
-    file << report.value().figures.dump(2) << '\n';
-    return file.flush() ? kDone : Fail(kMachineFailed, options.json + ": cannot be written");
+    if (!quality) return Fail(kWrongUse, quality.error());
+    PrintTable(quality.value().figures);
+    return WriteFiles(quality.value(), options);
 }
 
 }  // namespace hitchview::app

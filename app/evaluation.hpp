@@ -45,7 +45,8 @@ struct Quality {
 ///   frames
 ///   series: rate_hz step
 ///     units.<unit>.{in, out}: x_px y_px rotation_rad (one per frame), spectrum.{hz, amplitude_px}
-///     units.<unit>.view: frame cropping distortion distortion_eigen kept
+///     units.<unit>.view: frame kept cropping distortion distortion_eigen (of the dominant plane),
+///       picture.{cropping, distortion, distortion_eigen} (of the whole picture)
 ///     seams.<left|right>: frame pairs mean_px p95_px
 ///     panorama: frame coverage
 /// What cannot be known from these videos is null (locked_share always is: it is a state of the
@@ -53,18 +54,22 @@ struct Quality {
 ///
 /// `paper` holds the figures as the published method's tables define them (Bundled Camera Paths,
 /// Liu et al. 2013, for one view; Guo et al. 2016 for a seam), to stand beside those tables:
-///   cropping            mean over frames of `cropping` (see ViewMeter)
-///   distortion          smallest `distortion_eigen` of all frames
+///   cropping            mean over frames of the whole picture's `cropping` (see ViewMeter)
+///   distortion          smallest `distortion_eigen` of the whole picture, of all frames
 ///   stability           energy share of the 2nd to 6th lowest frequency of the output's whole
 ///   path,
 ///                       mean of translation and rotation; `stability` is their smaller one
 ///   stitching_score_px  largest of the frames' mean distances
-/// Three things to know when comparing figures with those of other programs. A trend or a pan fills
-/// the lowest frequencies, so stability is near 1 for any long pan: `stability_detrended` and
-/// `jitter_ratio` are not fooled. Some programs divide the scale by the size ratio of output to
-/// input; here a larger canvas is no crop. The stitching score is one frame's, hence the noisiest
-/// figure of all: programs that ask for fewer pairs a frame, or do not refuse mismatches along the
-/// epipolar line, give larger ones.
+/// What to know when comparing figures with those of other programs:
+/// - A trend or a pan fills the lowest frequencies, so that stability is near 1 for any long pan;
+///   `stability_detrended` and `jitter_ratio` are not fooled. Stability depends on the number of
+///   frames: the same shake in a recording twice as long counts less.
+/// - Some programs divide the scale by the size ratio of output to input, and so call no cropping
+///   what lies on a large canvas; here a larger canvas is no crop and hides none.
+/// - The worst frame's distortion depends on the inlier threshold as long as there is parallax
+///   (see ViewMeter), and on how many frames are matched: so does the stitching score, which is one
+///   frame's too. Figures with different `step` are not comparable.
+/// - Jerk is in pixels of the video at hand; programs that scale paths to one width give others.
 hal::Checked<Quality> Evaluate(const EvaluationOptions& options);
 
 }  // namespace hitchview::app

@@ -26,7 +26,7 @@ json Column(const std::vector<Record>& records, double Record::*member) {
     return Rounded(Collect(records, member));
 }
 
-// The path that the path's summed motions make: its components, and how it shakes.
+// Where the picture went, by component, and how it shakes.
 json PathSeries(const PathMeter& meter, double rate_hz) {
     std::vector<double> x_px;
     std::vector<double> y_px;
@@ -44,13 +44,19 @@ json PathSeries(const PathMeter& meter, double rate_hz) {
              {{"hz", Rounded(spectrum.hz)}, {"amplitude_px", Rounded(spectrum.amplitude_px)}}}};
 }
 
+json WarpSeries(const std::vector<WarpFigures>& frames) {
+    return {{"cropping", Column(frames, &WarpFigures::cropping)},
+            {"distortion", Column(frames, &WarpFigures::distortion)},
+            {"distortion_eigen", Column(frames, &WarpFigures::distortion_eigen)}};
+}
+
 json SlowFigures(const SlowShares& shares) {
     return {{"translation", Known(shares.translation)}, {"rotation", Known(shares.rotation)}};
 }
 
 json PaperFigures(const PathScores& in, const PathScores& out, const ViewScores& view) {
-    return {{"cropping", Known(view.cropping_mean)},
-            {"distortion", Known(view.distortion_eigen_min)},
+    return {{"cropping", Known(view.picture_cropping_mean)},
+            {"distortion", Known(view.picture_distortion_eigen_min)},
             {"stability", Known(out.stability.Mean())},
             {"stability_in", Known(in.stability.Mean())}};
 }
@@ -112,14 +118,13 @@ json PanoramaFigures(const PathMeter& path, const CoverageMeter& coverage) {
 
 json UnitSeries(const UnitMeters& meters) {
     const std::vector<ViewFrame>& frames = meters.view.frames();
+    json view = WarpSeries(Collect(frames, &ViewFrame::plane));
+    view["frame"] = Collect(frames, &ViewFrame::frame);
+    view["kept"] = Column(frames, &ViewFrame::kept);
+    view["picture"] = WarpSeries(Collect(frames, &ViewFrame::picture));
     return {{"in", PathSeries(meters.in, meters.rate_hz)},
             {"out", PathSeries(meters.out, meters.rate_hz)},
-            {"view",
-             {{"frame", Collect(frames, &ViewFrame::frame)},
-              {"cropping", Column(frames, &ViewFrame::cropping)},
-              {"distortion", Column(frames, &ViewFrame::distortion)},
-              {"distortion_eigen", Column(frames, &ViewFrame::distortion_eigen)},
-              {"kept", Column(frames, &ViewFrame::kept)}}}};
+            {"view", view}};
 }
 
 json SeamSeries(const SeamMeter& meter) {

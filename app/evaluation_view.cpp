@@ -16,12 +16,10 @@ std::optional<cv::Matx33d> CoarseHomography(const cv::Mat& in, const cv::Mat& ou
     return maybe_H ? maybe_H : FitHomography(MatchSift(in, out), kThresholdPx);
 }
 
-// Tracks the input, warped by the coarse fit, into the output: sub-pixel, and on 50 points or more.
-std::optional<cv::Matx33d> HomographyBetween(const cv::Mat& in, const cv::Mat& out) {
-    constexpr std::size_t kFewestTracks = 50;
-    constexpr double kThresholdPx = 2;
+// Tracks the input, warped by the coarse fit, into the output: sub-pixel. None without such a fit.
+PointPairs TracksBetween(const cv::Mat& in, const cv::Mat& out) {
     const auto maybe_coarse = CoarseHomography(in, out);
-    if (!maybe_coarse) return std::nullopt;
+    if (!maybe_coarse) return {};
     cv::Mat warped;
     cv::Mat inside;
     cv::warpPerspective(in, warped, *maybe_coarse, out.size());
@@ -29,9 +27,9 @@ std::optional<cv::Matx33d> HomographyBetween(const cv::Mat& in, const cv::Mat& o
                         out.size());
     cv::erode(inside, inside, cv::Mat::ones(15, 15, CV_8U));
     PointPairs tracks = TrackCorners(warped, out, inside);
-    if (tracks.size() < kFewestTracks) return std::nullopt;
+    if (tracks.size() == 0) return {};
     cv::perspectiveTransform(tracks.first, tracks.first, maybe_coarse->inv());
-    return FitHomography(tracks, kThresholdPx);
+    return tracks;
 }
 
 // Smaller over larger eigenvalue by absolute value; 1 for a complex pair.
@@ -64,39 +62,53 @@ double KeptShare(const cv::Matx33d& H_out_in, cv::Size in, cv::Size out) {
     return std::min(1.0, cv::contourArea(inside) / in.area());
 }
 
-ViewFrame Figures(const cv::Matx33d& H_out_in, cv::Size in, cv::Size out, int frame) {
+WarpFigures Figures(const cv::Matx33d& H_out_in) {
     const cv::Matx22d A = H_out_in.get_minor<2, 2>(0, 0);
-    return {.frame = frame,
-            .cropping = std::min(1.0, 1 / std::sqrt(std::abs(cv::determinant(A)))),
+    return {.cropping = std::min(1.0, 1 / std::sqrt(std::abs(cv::determinant(A)))),
             .distortion = SingularRatio(A),
-            .distortion_eigen = EigenRatio(A),
-            .kept = KeptShare(H_out_in, in, out)};
+            .distortion_eigen = EigenRatio(A)};
 }
 
 }  // namespace
 
 void ViewMeter::Append(const cv::Mat& in_grey, const cv::Mat& out_grey, int frame) {
-    const auto maybe_H = HomographyBetween(in_grey, out_grey);
-    if (!maybe_H) {
+    constexpr std::size_t kFewestTracks = 50;
+    constexpr double kPlanePx = 2;
+    constexpr double kPicturePx = 5;
+    const PointPairs tracks = TracksBetween(in_grey, out_grey);
+    const auto maybe_H_plane = FitHomography(tracks, kPlanePx);
+    const auto maybe_H_picture = FitHomography(tracks, kPicturePx);
+    if (tracks.size() < kFewestTracks || !maybe_H_plane || !maybe_H_picture) {
         ++failed_;
         return;
     }
-    frames_.push_back(Figures(*maybe_H, in_grey.size(), out_grey.size(), frame));
+    frames_.push_back({.frame = frame,
+                       .plane = Figures(*maybe_H_plane),
+                       .picture = Figures(*maybe_H_picture),
+                       .kept = KeptShare(*maybe_H_picture, in_grey.size(), out_grey.size())});
     const ViewFrame& figures = frames_.back();
-    if (worst_.in_grey.empty() || figures.distortion < worst_.figures.distortion) {
-        worst_ = {figures, in_grey.clone(), out_grey.clone(), *maybe_H};
+    if (worst_.in_grey.empty() || figures.picture.distortion < worst_.figures.picture.distortion) {
+        worst_ = {figures, in_grey.clone(), out_grey.clone(), *maybe_H_picture};
     }
 }
 
 ViewScores ViewMeter::Scores() const {
-    const auto all = [&](double ViewFrame::*figure) { return Collect(frames_, figure); };
-    return {.cropping_mean = Mean(all(&ViewFrame::cropping)),
-            .cropping_min = Quantile(all(&ViewFrame::cropping), 0),
-            .distortion_min = Quantile(all(&ViewFrame::distortion), 0),
-            .distortion_p01 = Quantile(all(&ViewFrame::distortion), 0.01),
-            .distortion_eigen_min = Quantile(all(&ViewFrame::distortion_eigen), 0),
-            .kept_mean = Mean(all(&ViewFrame::kept)),
-            .kept_min = Quantile(all(&ViewFrame::kept), 0),
+    const auto plane = [&](double WarpFigures::*figure) {
+        return Collect(Collect(frames_, &ViewFrame::plane), figure);
+    };
+    const auto picture = [&](double WarpFigures::*figure) {
+        return Collect(Collect(frames_, &ViewFrame::picture), figure);
+    };
+    const std::vector<double> kept = Collect(frames_, &ViewFrame::kept);
+    return {.cropping_mean = Mean(plane(&WarpFigures::cropping)),
+            .cropping_min = Quantile(plane(&WarpFigures::cropping), 0),
+            .distortion_min = Quantile(plane(&WarpFigures::distortion), 0),
+            .distortion_p01 = Quantile(plane(&WarpFigures::distortion), 0.01),
+            .distortion_eigen_min = Quantile(plane(&WarpFigures::distortion_eigen), 0),
+            .picture_cropping_mean = Mean(picture(&WarpFigures::cropping)),
+            .picture_distortion_eigen_min = Quantile(picture(&WarpFigures::distortion_eigen), 0),
+            .kept_mean = Mean(kept),
+            .kept_min = Quantile(kept, 0),
             .frames_failed = failed_};
 }
 

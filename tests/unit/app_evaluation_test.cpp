@@ -1,12 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "app/evaluation.hpp"
+#include "app/evaluation_coverage.hpp"
 #include "app/evaluation_path.hpp"
 #include "app/evaluation_seam.hpp"
 #include "app/evaluation_statistics.hpp"
@@ -122,6 +124,15 @@ TEST(PathMeterTest, HalfTheShakeIsHalfTheJitter) {
     EXPECT_FALSE(JitterRatio(shaken(2), Measure([](int) { return Pose{}; }), kRateHz));
 }
 
+TEST(PathMeterTest, TheSpectrumHasAShakesAmplitudeAtItsFrequency) {
+    const PathMeter meter = Measure([](int i) { return Pose{.x_px = 4 * Wave(i, 5)}; });
+    const Spectrum spectrum = ShakeSpectrum(meter.path(), kRateHz);
+    const auto peak = std::ranges::max_element(spectrum.amplitude_px);
+    EXPECT_NEAR(*peak, 4, 0.1);
+    EXPECT_NEAR(spectrum.hz[static_cast<std::size_t>(peak - spectrum.amplitude_px.begin())], 5,
+                0.01);
+}
+
 TEST(PathMeterTest, TheSameVideoGivesTheSameFiguresToTheLastBit) {
     const auto pose = [](int i) { return Pose{.x_px = 4 * Wave(i, 5)}; };
     EXPECT_EQ(Measure(pose).path(), Measure(pose).path());
@@ -167,6 +178,22 @@ TEST(ViewMeterTest, AShearHasNoEigenvalueDistortionButASingularOne) {
     const double expected = std::pow((std::sqrt(4 + 0.01) - 0.1) / 2, 2);
     EXPECT_NEAR(scores.distortion_min.value(), expected, 0.003);
     EXPECT_GT(scores.distortion_eigen_min.value(), 0.97);
+}
+
+TEST(ViewMeterTest, WhatIsShiftedOffTheCanvasIsNotKept) {
+    EXPECT_NEAR(MeasureView(Shift(kView.width / 4.0, 0), kView).kept_min.value(), 0.75, 0.003);
+    EXPECT_NEAR(MeasureView(Shift(200, 40), {700, 320}).kept_min.value(), 1, 0.003);
+}
+
+TEST(ViewMeterTest, TheWorstViewIsTheMostStretchedOne) {
+    const cv::Mat in = tests::Texture(kView, 3);
+    ViewMeter meter;
+    for (const double stretch : {1.0, 1.1, 1.05}) {
+        const cv::Matx33d H(stretch, 0, 0, 0, 1, 0, 0, 0, 1);
+        meter.Append(in, Look(in, H), 10 + static_cast<int>(meter.frames().size()));
+    }
+    EXPECT_EQ(meter.worst().figures.frame, 11);
+    EXPECT_NEAR(meter.worst().H_out_in(0, 0), 1.1, 0.003);
 }
 
 TEST(ViewMeterTest, UnrelatedPicturesAreNotMeasured) {
@@ -217,6 +244,33 @@ TEST(SeamMeterTest, TheWorstFrameIsTheWorstMean) {
         meter.Append(layers.tractor, layers.trailer, masks[Overlap::kRight], 0);
     }
     EXPECT_NEAR(meter.Scores().worst_frame_px.value(), 6, 0.2);
+    const WorstSeam& worst = meter.worst();
+    EXPECT_NEAR(worst.figures.mean_px, 6, 0.2);
+    ASSERT_GE(worst.pairs.size(), 12U);
+    EXPECT_NEAR(worst.pairs.second[0].x - worst.pairs.first[0].x, 6, 0.5);
+    EXPECT_LT(worst.pairs.first[0].x, static_cast<float>(worst.tractor_grey.cols));
+}
+
+TEST(CoverageMeterTest, TheCommonRectangleIsCoveredInEveryFrame) {
+    CoverageMeter meter;
+    for (const cv::Rect shown : {cv::Rect(0, 0, 80, 100), cv::Rect(20, 10, 80, 90)}) {
+        cv::Mat panorama = cv::Mat::zeros(100, 100, CV_8U);
+        panorama(shown).setTo(128);
+        panorama(cv::Rect(40, 40, 20, 20)).setTo(3);  // a dark spot of the scene
+        meter.Append(panorama, 0);
+    }
+    EXPECT_NEAR(meter.frames()[0].share, 0.80, 1e-9);
+    EXPECT_NEAR(meter.frames()[1].share, 0.72, 1e-9);
+    EXPECT_NEAR(meter.CommonRectangleShare().value(), 0.60 * 0.90, 1e-9);
+    EXPECT_FALSE(CoverageMeter().CommonRectangleShare());
+}
+
+TEST(CoverageMeterTest, TheLargestRectangleOfAStaircase) {
+    cv::Mat mask = cv::Mat::zeros(6, 6, CV_8U);
+    mask(cv::Rect(0, 0, 2, 6)).setTo(255);  // 12
+    mask(cv::Rect(0, 2, 4, 4)).setTo(255);  // 16
+    mask(cv::Rect(0, 4, 6, 2)).setTo(255);  // 12
+    EXPECT_EQ(LargestRectangleArea(mask), 16);
 }
 
 TEST(SeamMeterTest, WithoutAnOverlapNothingIsKnown) {
@@ -262,9 +316,47 @@ TEST(EvaluateTest, OneUnitGivesItsFiguresAndNullForWhatCannotBeKnown) {
     EXPECT_NEAR(tractor["cropping_mean"].get<double>(), 1, 0.003);
     EXPECT_NEAR(tractor["jerk_in_px"].get<double>() / tractor["jerk_out_px"].get<double>(), 4, 0.3);
     EXPECT_FALSE(report["units"].contains("trailer"));
+    EXPECT_NEAR(tractor["paper"]["cropping"].get<double>(), 1, 0.003);
+    EXPECT_GT(tractor["paper"]["distortion"].get<double>(), 0.99);
+    EXPECT_LT(tractor["paper"]["stability"].get<double>(), 0.2);
+    const nlohmann::json& series = report["series"]["units"]["tractor"];
+    EXPECT_EQ(series["view"]["frame"], nlohmann::json({0, 10, 20, 30, 40}));
+    EXPECT_EQ(series["view"]["picture"]["distortion"].size(), 5U);
+    ASSERT_EQ(series["in"]["x_px"].size(), 48U);
+    EXPECT_NEAR(series["in"]["x_px"][2].get<double>(), 4 * Wave(2, 5), 0.1);
+    EXPECT_NEAR(series["out"]["x_px"][2].get<double>(), 1 * Wave(2, 5), 0.1);
     EXPECT_TRUE(report["seams"]["left"]["median_px"].is_null());
     EXPECT_TRUE(report["seams"]["right"]["locked_share"].is_null());
     EXPECT_TRUE(report["panorama"]["stability"].is_null());
+}
+
+TEST(EvaluateTest, LayersWithAKnownOffsetHaveItAsStitchingScore) {
+    const tests::TemporaryFolder folder;
+    EvaluationOptions options;
+    for (const Unit unit : algo::kUnits) {
+        options.units[unit].out = folder / std::string(ToString(unit)) + ".avi";
+        cv::VideoWriter writer(options.units[unit].out, cv::CAP_OPENCV_MJPEG,
+                               cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), kRateHz, {640, 240});
+        for (const double error_px : {0.0, 4.0, 1.0}) {
+            const Layers layers({0, 0}, {0, error_px});
+            cv::Mat bgr;
+            cv::cvtColor(unit == Unit::kTractor ? layers.tractor : layers.trailer, bgr,
+                         cv::COLOR_GRAY2BGR);
+            writer.write(bgr);
+        }
+    }
+    const auto evaluated = Evaluate(options);
+    ASSERT_TRUE(evaluated) << evaluated.error();
+    const nlohmann::json& figures = evaluated.value().figures;
+    const auto score_px = [&](const char* seam) {
+        return figures["seams"][seam]["paper"]["stitching_score_px"].get<double>();
+    };
+    EXPECT_NEAR(score_px("right"), 4, 0.2);
+    EXPECT_LT(score_px("left"), 0.3);
+    EXPECT_NEAR(figures["seams"]["right"]["vertical_p95_px"].get<double>(), 4, 0.3);
+    EXPECT_LT(figures["seams"]["right"]["horizontal_median_px"].get<double>(), 0.2);
+    EXPECT_EQ(figures["series"]["seams"]["right"]["frame"], nlohmann::json({0, 1, 2}));
+    EXPECT_EQ(evaluated.value().worst_seams[Overlap::kRight].figures.frame, 1);
 }
 
 TEST(EvaluateTest, WhatCannotBeReadIsNamed) {
