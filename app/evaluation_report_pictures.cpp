@@ -23,7 +23,7 @@ void DrawLine(cv::Mat& picture, cv::Point2f a, cv::Point2f b, const cv::Scalar& 
 
 // So many canvas pixels of `size` are one pixel on the page.
 double ShownScale(cv::Size size) {
-    constexpr double kLargestPx = 560;
+    constexpr double kLargestPx = 460;
     constexpr double kMostEnlarged = 3;
     return std::min(kMostEnlarged, kLargestPx / std::max(size.width, size.height));
 }

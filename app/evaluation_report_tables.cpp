@@ -13,6 +13,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr const char* kNotMeasured = "not measured";
+
 // How one figure is shown.
 struct Row {
     const char* label;
@@ -65,7 +67,7 @@ Parts PartsOf(const json& group, const std::string& behind) {
 
 std::string Shown(const json& part, const Row& row) {
     const json::json_pointer pointer(row.pointer);
-    if (!part.contains(pointer) || !part[pointer].is_number()) return "not measured";
+    if (!part.contains(pointer) || !part[pointer].is_number()) return kNotMeasured;
     return Number(row.factor * part[pointer].get<double>(), row.decimals) + row.unit;
 }
 
@@ -80,7 +82,19 @@ std::string Heads(const std::vector<std::string>& titles) {
     return html + "</tr>";
 }
 
+bool AnyShown(const Parts& parts, std::span<const Row> rows) {
+    for (const auto& [title, part] : parts) {
+        for (const Row& row : rows) {
+            if (Shown(*part, row) != kNotMeasured) return true;
+        }
+    }
+    return false;
+}
+
 std::string FigureTable(const std::string& caption, const Parts& parts, std::span<const Row> rows) {
+    if (!AnyShown(parts, rows)) {
+        return "<p class=\"none\">" + Escaped(caption) + ": " + kNotMeasured + "</p>";
+    }
     std::vector<std::string> titles{""};
     for (const auto& [title, part] : parts) titles.push_back(title);
     std::string html = "<table><caption>" + Escaped(caption) + "</caption>" + Heads(titles);
@@ -94,7 +108,7 @@ std::string FigureTable(const std::string& caption, const Parts& parts, std::spa
 
 // `good`: at least as good as what is published.
 std::string Judged(const json& figure, int decimals, const std::string& unit, bool good) {
-    if (!figure.is_number()) return Cell("not measured", "none");
+    if (!figure.is_number()) return Cell(kNotMeasured, "none");
     const std::string text = Number(figure.get<double>(), decimals) + unit;
     return Cell(text + (good ? " \u2713" : " \u25bd"), good ? "good" : "poor");
 }
