@@ -21,11 +21,13 @@ void DrawLine(cv::Mat& picture, cv::Point2f a, cv::Point2f b, const cv::Scalar& 
     cv::line(picture, Fixed(a), Fixed(b), colour, 1, cv::LINE_AA, kFractionBits);
 }
 
-// So many canvas pixels of `size` are one pixel on the page.
+// Pixels of the page for one of a picture of `size`: two of them fit side by side, a tall one is
+// not taller than a screen.
 double ShownScale(cv::Size size) {
-    constexpr double kLargestPx = 460;
+    constexpr double kWidestPx = 460;
+    constexpr double kTallestPx = 620;
     constexpr double kMostEnlarged = 3;
-    return std::min(kMostEnlarged, kLargestPx / std::max(size.width, size.height));
+    return std::min({kMostEnlarged, kWidestPx / size.width, kTallestPx / size.height});
 }
 
 cv::Mat Scaled(const cv::Mat& picture) {

@@ -43,8 +43,10 @@ nlohmann::json MeasureQuality(const RigConfig& config, const std::filesystem::pa
         return nullptr;
     std::ifstream in(file);
     nlohmann::json quality = nlohmann::json::parse(in, nullptr, false);
-    // The run's report holds figures; their course over time stays in its own file.
-    if (quality.is_object()) quality.erase("series");
+    if (!quality.is_object()) return nullptr;
+    // The run's report holds figures only; the rest stays in its own file.
+    quality.erase("series");
+    quality.erase("recordings");
     return quality;
 }
 
