@@ -187,8 +187,13 @@ std::string Definitions() {
            Definition(
                "Distortion",
                "How unequally it is stretched: ratio of the smaller to the larger eigenvalue "
-               "of that homography's linear part, worst frame. The stricter form uses "
-               "singular values, which see a stretch under a rotation too.") +
+               "of that homography's linear part, worst frame. The form with "
+               "singular values sees a stretch under a rotation too.") +
+           Definition("Dominant plane",
+                      "The homography may miss a point by 5 px and so describes the whole picture, "
+                      "or by 2 px and then only its largest plane. Where near things stand before "
+                      "far ones, the largest plane changes from frame to frame: its worst frame "
+                      "says more about the fit than about the picture. By singular values.") +
            Definition("Stability",
                       "Share of the path's energy in its 2nd to 6th lowest frequency, mean of "
                       "translation and rotation, re-tracked in the stabilised frames. A long pan "
