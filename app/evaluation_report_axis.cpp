@@ -1,7 +1,6 @@
 #include "app/evaluation_report_axis.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "app/evaluation_report_html.hpp"

@@ -1,5 +1,6 @@
 #include "app/evaluation_report_html.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
