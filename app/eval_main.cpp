@@ -19,6 +19,10 @@ int main(int argc, char** argv) {
                    "trailer's view on the canvas, before blending");
     app.add_option("--panorama", options.panorama, "panorama");
     app.add_option("--json", options.json, "file for the figures");
+    app.add_option("--html", options.html, "file for a report to read: charts, worst frames");
+    app.add_option("--summary", options.summary,
+                   "tabulate these files of --json beside the published figures, and do no more")
+        ->check(CLI::ExistingFile);
     app.add_option("--step", options.step, "match every so many-th frame only")
         ->check(CLI::PositiveNumber);
     try {

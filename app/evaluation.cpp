@@ -3,12 +3,9 @@
 #include <chrono>
 #include <memory>
 #include <opencv2/core.hpp>
-#include <optional>
 #include <utility>
 
-#include "app/evaluation_path.hpp"
-#include "app/evaluation_seam.hpp"
-#include "app/evaluation_view.hpp"
+#include "app/evaluation_figures.hpp"
 #include "drivers/replay_camera.hpp"
 
 namespace hitchview::app {
@@ -60,15 +57,13 @@ class GreyVideo {
     hal::FrameLease lease_;  ///< dies before its camera
 };
 
-json Known(const std::optional<double>& maybe_value) {
-    return maybe_value ? json(*maybe_value) : json(nullptr);
-}
-
 class UnitEvaluation {
  public:
     hal::Checked<hal::Done> Open(const UnitVideos& videos) {
         if (auto opened = in_.Open(videos.in); !opened) return opened;
-        return out_.Open(videos.out);
+        if (auto opened = out_.Open(videos.out); !opened) return opened;
+        if (known()) meters_.rate_hz = in_.known() ? in_.rate_hz() : out_.rate_hz();
+        return hal::Done{};
     }
     hal::Checked<bool> Next() {
         auto more = in_.Next();
@@ -76,43 +71,20 @@ class UnitEvaluation {
     }
     [[nodiscard]] bool known() const { return in_.known() || out_.known(); }
     [[nodiscard]] const GreyVideo& out() const { return out_; }
+    [[nodiscard]] const UnitMeters& meters() const { return meters_; }
 
-    void Measure(bool matched) {
-        if (in_.known()) in_path_.Append(in_.grey());
-        if (out_.known()) out_path_.Append(out_.grey());
-        if (in_.known() && out_.known() && matched) view_.Append(in_.grey(), out_.grey());
-    }
-
-    [[nodiscard]] json Report() const {
-        const PathScores in = in_path_.Scores();
-        const PathScores out = out_path_.Scores();
-        const ViewScores view = view_.Scores();
-        const auto jitter_ratio =
-            in_.known() ? JitterRatio(out_path_, in_path_, in_.rate_hz()) : std::nullopt;
-        return {{"cropping_mean", Known(view.cropping_mean)},
-                {"cropping_min", Known(view.cropping_min)},
-                {"distortion_min", Known(view.distortion_min)},
-                {"distortion_p01", Known(view.distortion_p01)},
-                {"distortion_eigen_min", Known(view.distortion_eigen_min)},
-                {"stability", Known(out.stability)},
-                {"stability_in", Known(in.stability)},
-                {"stability_detrended", Known(out.stability_detrended)},
-                {"stability_frames", out.stability_frames},
-                {"jitter_ratio", Known(jitter_ratio)},
-                {"jerk_in_px", Known(in.jerk_px)},
-                {"jerk_out_px", Known(out.jerk_px)},
-                {"rot_jerk_out_rad", Known(out.rot_jerk_rad)},
-                {"frames_unmatched", view.frames_failed},
-                {"frames_lost", out_path_.lost()},
-                {"frames_repeated", out_path_.repeated()}};
+    void Measure(int frame, bool matched) {
+        if (in_.known()) meters_.in.Append(in_.grey());
+        if (out_.known()) meters_.out.Append(out_.grey());
+        if (in_.known() && out_.known() && matched) {
+            meters_.view.Append(in_.grey(), out_.grey(), frame);
+        }
     }
 
  private:
     GreyVideo in_;
     GreyVideo out_;
-    PathMeter in_path_;
-    PathMeter out_path_;
-    ViewMeter view_;
+    UnitMeters meters_;
 };
 
 class Evaluation {
@@ -133,28 +105,27 @@ class Evaluation {
     }
 
     hal::Checked<hal::Done> Measure(bool matched) {
-        ++frames_;
-        for (UnitEvaluation& unit : units_.of) unit.Measure(matched);
+        const int frame = frames_++;
+        for (UnitEvaluation& unit : units_.of) unit.Measure(frame, matched);
         if (panorama_.known()) panorama_path_.Append(panorama_.grey());
-        return matched ? MeasureSeams() : hal::Done{};
+        if (panorama_.known() && matched) coverage_.Append(panorama_.grey(), frame);
+        return matched ? MeasureSeams(frame) : hal::Done{};
     }
 
-    [[nodiscard]] json Report() const {
-        json report{{"frames", frames_}, {"units", json::object()}, {"seams", json::object()}};
+    [[nodiscard]] Quality Report() const {
+        Quality quality{.figures = Figures()};
+        quality.figures["series"] = Series();
         for (const Unit unit : algo::kUnits) {
-            if (units_[unit].known()) report["units"][ToString(unit)] = units_[unit].Report();
+            quality.worst_views[unit] = units_[unit].meters().view.worst();
         }
         for (const Overlap overlap : algo::kOverlaps) {
-            report["seams"][ToString(overlap)] = ReportSeam(seams_[overlap].Scores());
+            quality.worst_seams[overlap] = seams_[overlap].worst();
         }
-        const PathScores panorama = panorama_path_.Scores();
-        report["panorama"] = {{"stability", Known(panorama.stability)},
-                              {"jerk_px", Known(panorama.jerk_px)}};
-        return report;
+        return quality;
     }
 
  private:
-    hal::Checked<hal::Done> MeasureSeams() {
+    hal::Checked<hal::Done> MeasureSeams(int frame) {
         const GreyVideo& tractor = units_[Unit::kTractor].out();
         const GreyVideo& trailer = units_[Unit::kTrailer].out();
         if (!tractor.known() || !trailer.known()) return hal::Done{};
@@ -164,29 +135,64 @@ class Evaluation {
         }
         const PerOverlap<cv::Mat> masks = OverlapMasks(tractor.grey(), trailer.grey());
         for (const Overlap overlap : algo::kOverlaps) {
-            seams_[overlap].Append(tractor.grey(), trailer.grey(), masks[overlap]);
+            seams_[overlap].Append(tractor.grey(), trailer.grey(), masks[overlap], frame);
         }
         return hal::Done{};
     }
 
-    static json ReportSeam(const SeamScores& seam) {
-        return {{"median_px", Known(seam.median_px)},
-                {"p95_px", Known(seam.p95_px)},
-                {"worst_frame_px", Known(seam.worst_frame_px)},
-                {"horizontal_median_px", Known(seam.horizontal_median_px)},
-                {"vertical_median_px", Known(seam.vertical_median_px)},
-                {"measured_share", Known(seam.measured_share)},
-                {"locked_share", nullptr}};
+    [[nodiscard]] json Figures() const {
+        json figures{{"frames", frames_}, {"units", json::object()}, {"seams", json::object()}};
+        for (const Unit unit : algo::kUnits) {
+            if (!units_[unit].known()) continue;
+            figures["units"][ToString(unit)] = UnitFigures(units_[unit].meters());
+        }
+        for (const Overlap overlap : algo::kOverlaps) {
+            figures["seams"][ToString(overlap)] = SeamFigures(seams_[overlap]);
+        }
+        figures["panorama"] = PanoramaFigures(panorama_path_, coverage_);
+        return figures;
+    }
+
+    [[nodiscard]] json Series() const {
+        json series{{"units", json::object()}, {"seams", json::object()}, {"rate_hz", RateHz()}};
+        for (const Unit unit : algo::kUnits) {
+            if (!units_[unit].known()) continue;
+            series["units"][ToString(unit)] = UnitSeries(units_[unit].meters());
+        }
+        for (const Overlap overlap : algo::kOverlaps) {
+            series["seams"][ToString(overlap)] = SeamSeries(seams_[overlap]);
+        }
+        series["panorama"] = CoverageSeries(coverage_);
+        return series;
+    }
+
+    [[nodiscard]] double RateHz() const {
+        for (const UnitEvaluation& unit : units_.of) {
+            if (unit.known()) return unit.meters().rate_hz;
+        }
+        return panorama_.rate_hz();
     }
 
     PerUnit<UnitEvaluation> units_;
     GreyVideo panorama_;
     PathMeter panorama_path_;
+    CoverageMeter coverage_;
     PerOverlap<SeamMeter> seams_;
     int frames_ = 0;
 };
 
-hal::Checked<json> Run(const EvaluationOptions& options) {
+json Recordings(const EvaluationOptions& options) {
+    json recordings{{"units", json::object()}};
+    for (const Unit unit : algo::kUnits) {
+        const auto& [in, out] = options.units[unit];
+        if (!in.empty()) recordings["units"][ToString(unit)]["in"] = in;
+        if (!out.empty()) recordings["units"][ToString(unit)]["out"] = out;
+    }
+    if (!options.panorama.empty()) recordings["panorama"] = options.panorama;
+    return recordings;
+}
+
+hal::Checked<Quality> Run(const EvaluationOptions& options) {
     Evaluation evaluation;
     if (auto opened = evaluation.Open(options); !opened) return opened.error();
     for (int frame = 0;; ++frame) {
@@ -197,7 +203,10 @@ hal::Checked<json> Run(const EvaluationOptions& options) {
         if (!measured) return measured.error();
         options.progress(frame + 1);
     }
-    return evaluation.Report();
+    Quality quality = evaluation.Report();
+    quality.figures["recordings"] = Recordings(options);
+    quality.figures["series"]["step"] = options.step;
+    return quality;
 }
 
 bool AnyVideo(const EvaluationOptions& options) {
@@ -208,7 +217,7 @@ bool AnyVideo(const EvaluationOptions& options) {
 
 }  // namespace
 
-hal::Checked<json> Evaluate(const EvaluationOptions& options) {
+hal::Checked<Quality> Evaluate(const EvaluationOptions& options) {
     HV_EXPECT(options.step >= 1);
     if (!AnyVideo(options)) return std::string("no video to evaluate");
     try {

@@ -74,16 +74,11 @@ std::optional<double> SlowShare(const Signal& power) {
     return Energy(power, 1, 1 + kSlowBins) / all;
 }
 
-std::optional<double> SmallerKnown(std::optional<double> a, std::optional<double> b) {
-    if (!a || !b) return a ? a : b;
-    return std::min(*a, *b);
-}
-
 // `Prepare` is applied to each component before its spectrum is taken.
 template <typename Prepare>
-std::optional<double> Stability(const std::vector<cv::Vec3d>& path, Prepare prepare) {
+SlowShares Stability(const std::vector<cv::Vec3d>& path, Prepare prepare) {
     const auto power = [&](int component) { return Power(prepare(Component(path, component))); };
-    return SmallerKnown(SlowShare(Sum(power(0), power(1))), SlowShare(power(2)));
+    return {.translation = SlowShare(Sum(power(0), power(1))), .rotation = SlowShare(power(2))};
 }
 
 // Root of the mean square of second differences, summed over components [first, end).
@@ -96,16 +91,17 @@ double RmsSecondDifference(const std::vector<cv::Vec3d>& path, int first, int en
     return std::sqrt(sum / static_cast<double>(path.size() - 2));
 }
 
+Signal DetrendedPower(const std::vector<cv::Vec3d>& path) {
+    const auto power = [&](int component) { return Power(Detrended(Component(path, component))); };
+    return Sum(power(0), power(1));
+}
+
 double FastEnergy(const std::vector<cv::Vec3d>& path, double rate_hz) {
     constexpr double kFastHz = 1;
     const auto bins_per_hz = static_cast<double>(path.size()) / rate_hz;
     const auto first_bin = static_cast<std::size_t>(std::floor(kFastHz * bins_per_hz)) + 1;
-    double energy = 0;
-    for (const int component : {0, 1}) {
-        const Signal power = Power(Detrended(Component(path, component)));
-        energy += Energy(power, first_bin, power.size());
-    }
-    return energy;
+    const Signal power = DetrendedPower(path);
+    return Energy(power, first_bin, power.size());
 }
 
 // Motion of the frame centre and rotation; empty if it cannot be found.
@@ -128,6 +124,16 @@ bool Equal(const cv::Mat& a, const cv::Mat& b) {
 }
 
 }  // namespace
+
+std::optional<double> SlowShares::Mean() const {
+    if (!translation || !rotation) return translation ? translation : rotation;
+    return (*translation + *rotation) / 2;
+}
+
+std::optional<double> SlowShares::Smaller() const {
+    if (!translation || !rotation) return translation ? translation : rotation;
+    return std::min(*translation, *rotation);
+}
 
 void PathMeter::Append(const cv::Mat& grey) {
     CV_Assert(grey.type() == CV_8U && (early_.empty() || early_.size() == grey.size()));
@@ -158,6 +164,19 @@ std::optional<double> JitterRatio(const PathMeter& out, const PathMeter& in, dou
     const double in_energy = FastEnergy(in.path(), rate_hz);
     if (in_energy < kStillEnergy) return std::nullopt;
     return std::sqrt(FastEnergy(out.path(), rate_hz) / in_energy);
+}
+
+Spectrum ShakeSpectrum(const std::vector<cv::Vec3d>& path, double rate_hz) {
+    Spectrum spectrum;
+    if (path.size() < kFewestFrames) return spectrum;
+    const Signal power = DetrendedPower(path);
+    const auto frames = static_cast<double>(path.size());
+    for (std::size_t k = 1; k < power.size(); ++k) {
+        spectrum.hz.push_back(static_cast<double>(k) * rate_hz / frames);
+        // A sinusoid of amplitude 1 has a bin of N / 2, half of which the window lets through.
+        spectrum.amplitude_px.push_back(4 * std::sqrt(power[k]) / frames);
+    }
+    return spectrum;
 }
 
 }  // namespace hitchview::app

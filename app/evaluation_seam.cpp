@@ -5,7 +5,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "app/evaluation_features.hpp"
+#include "app/evaluation_coverage.hpp"
 #include "app/evaluation_statistics.hpp"
 
 namespace hitchview::app {
@@ -33,49 +33,69 @@ PointPairs NearOnePlane(const PointPairs& pairs) {
     return fit.empty() ? PointPairs{} : pairs.Keep(kept);
 }
 
-// Compression leaves a little noise in the black that surrounds a layer: hence 16, and closing.
-cv::Mat ShownBy(const cv::Mat& layer_grey) {
-    constexpr double kBlack = 16;
-    cv::Mat shown = layer_grey > kBlack;
-    cv::morphologyEx(shown, shown, cv::MORPH_CLOSE, cv::Mat::ones(11, 11, CV_8U));
-    return shown;
-}
-
 double CentreColumn(const cv::Mat& mask) {
     const cv::Moments moments = cv::moments(mask, true);
     return moments.m00 > 0 ? moments.m10 / moments.m00 : mask.cols / 2.0;
 }
 
+cv::Rect Around(const cv::Rect& overlap, cv::Size canvas) {
+    constexpr int kMarginPx = 48;
+    const cv::Point margin(kMarginPx, kMarginPx);
+    const cv::Rect wide(overlap.tl() - margin, overlap.br() + margin);
+    return wide & cv::Rect({}, canvas);
+}
+
+PointPairs Moved(PointPairs pairs, cv::Point2f by) {
+    for (cv::Point2f& point : pairs.first) point += by;
+    for (cv::Point2f& point : pairs.second) point += by;
+    return pairs;
+}
+
 }  // namespace
 
 void SeamMeter::Append(const cv::Mat& tractor_grey, const cv::Mat& trailer_grey,
-                       const cv::Mat& overlap) {
-    ++frames_;
+                       const cv::Mat& overlap, int frame) {
+    ++appended_;
     const cv::Rect where = cv::boundingRect(overlap);
     if (where.empty()) return;
     const PointPairs pairs = NearOnePlane(
         OnOneEpipolarGeometry(MatchSift(tractor_grey(where), trailer_grey(where), overlap(where))));
     if (pairs.size() < kFewestPairs) return;
-    double sum_px = 0;
+    frames_.push_back(Measure(pairs, frame));
+    const SeamFrame& figures = frames_.back();
+    if (worst_.tractor_grey.empty() || figures.mean_px > worst_.figures.mean_px) {
+        const cv::Rect around = Around(where, overlap.size());
+        worst_ = {figures, tractor_grey(around).clone(), trailer_grey(around).clone(),
+                  Moved(pairs, where.tl() - around.tl())};
+    }
+}
+
+SeamFrame SeamMeter::Measure(const PointPairs& pairs, int frame) {
+    std::vector<double> distances_px;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const cv::Point2d offset = pairs.first[i] - pairs.second[i];
-        distances_px_.push_back(cv::norm(offset));
+        distances_px.push_back(cv::norm(offset));
         horizontal_px_.push_back(std::abs(offset.x));
         vertical_px_.push_back(std::abs(offset.y));
-        sum_px += distances_px_.back();
     }
-    frame_means_px_.push_back(sum_px / static_cast<double>(pairs.size()));
+    distances_px_.insert(distances_px_.end(), distances_px.begin(), distances_px.end());
+    return {.frame = frame,
+            .pairs = static_cast<int>(pairs.size()),
+            .mean_px = Mean(distances_px).value_or(0),
+            .p95_px = Quantile(distances_px, 0.95).value_or(0)};
 }
 
 SeamScores SeamMeter::Scores() const {
     SeamScores scores{.median_px = Quantile(distances_px_, 0.5),
                       .p95_px = Quantile(distances_px_, 0.95),
-                      .worst_frame_px = Largest(frame_means_px_),
+                      .worst_frame_px = Largest(Collect(frames_, &SeamFrame::mean_px)),
                       .horizontal_median_px = Quantile(horizontal_px_, 0.5),
+                      .horizontal_p95_px = Quantile(horizontal_px_, 0.95),
                       .vertical_median_px = Quantile(vertical_px_, 0.5),
+                      .vertical_p95_px = Quantile(vertical_px_, 0.95),
                       .measured_share = {}};
-    if (frames_ > 0) {
-        scores.measured_share = static_cast<double>(frame_means_px_.size()) / frames_;
+    if (appended_ > 0) {
+        scores.measured_share = static_cast<double>(frames_.size()) / appended_;
     }
     return scores;
 }

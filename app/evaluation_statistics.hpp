@@ -8,6 +8,14 @@
 
 namespace hitchview::app {
 
+/// One member of each of `records`.
+template <typename Record, typename Value>
+std::vector<Value> Collect(const std::vector<Record>& records, Value Record::*member) {
+    std::vector<Value> values(records.size());
+    std::ranges::transform(records, values.begin(), member);
+    return values;
+}
+
 /// All three: empty for no values.
 inline std::optional<double> Mean(const std::vector<double>& values) {
     if (values.empty()) return std::nullopt;

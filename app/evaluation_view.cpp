@@ -16,12 +16,10 @@ std::optional<cv::Matx33d> CoarseHomography(const cv::Mat& in, const cv::Mat& ou
     return maybe_H ? maybe_H : FitHomography(MatchSift(in, out), kThresholdPx);
 }
 
-// Tracks the input, warped by the coarse fit, into the output: sub-pixel, and on 50 points or more.
-std::optional<cv::Matx33d> HomographyBetween(const cv::Mat& in, const cv::Mat& out) {
-    constexpr std::size_t kFewestTracks = 50;
-    constexpr double kThresholdPx = 2;
+// Tracks the input, warped by the coarse fit, into the output: sub-pixel. None without such a fit.
+PointPairs TracksBetween(const cv::Mat& in, const cv::Mat& out) {
     const auto maybe_coarse = CoarseHomography(in, out);
-    if (!maybe_coarse) return std::nullopt;
+    if (!maybe_coarse) return {};
     cv::Mat warped;
     cv::Mat inside;
     cv::warpPerspective(in, warped, *maybe_coarse, out.size());
@@ -29,9 +27,9 @@ std::optional<cv::Matx33d> HomographyBetween(const cv::Mat& in, const cv::Mat& o
                         out.size());
     cv::erode(inside, inside, cv::Mat::ones(15, 15, CV_8U));
     PointPairs tracks = TrackCorners(warped, out, inside);
-    if (tracks.size() < kFewestTracks) return std::nullopt;
+    if (tracks.size() == 0) return {};
     cv::perspectiveTransform(tracks.first, tracks.first, maybe_coarse->inv());
-    return FitHomography(tracks, kThresholdPx);
+    return tracks;
 }
 
 // Smaller over larger eigenvalue by absolute value; 1 for a complex pair.
@@ -50,27 +48,67 @@ double SingularRatio(const cv::Matx22d& A) {
     return singular(1) / singular(0);
 }
 
+std::vector<cv::Point2f> Corners(cv::Size size) {
+    const cv::Size2f s(size);
+    return {{0, 0}, {s.width, 0}, {s.width, s.height}, {0, s.height}};
+}
+
+double KeptShare(const cv::Matx33d& H_out_in, cv::Size in, cv::Size out) {
+    std::vector<cv::Point2f> placed;
+    std::vector<cv::Point2f> inside;
+    cv::perspectiveTransform(Corners(in), placed, H_out_in);
+    if (cv::intersectConvexConvex(placed, Corners(out), inside) <= 0) return 0;
+    cv::perspectiveTransform(inside, inside, H_out_in.inv());
+    return std::min(1.0, cv::contourArea(inside) / in.area());
+}
+
+WarpFigures Figures(const cv::Matx33d& H_out_in) {
+    const cv::Matx22d A = H_out_in.get_minor<2, 2>(0, 0);
+    return {.cropping = std::min(1.0, 1 / std::sqrt(std::abs(cv::determinant(A)))),
+            .distortion = SingularRatio(A),
+            .distortion_eigen = EigenRatio(A)};
+}
+
 }  // namespace
 
-void ViewMeter::Append(const cv::Mat& in_grey, const cv::Mat& out_grey) {
-    const auto maybe_H = HomographyBetween(in_grey, out_grey);
-    if (!maybe_H) {
+void ViewMeter::Append(const cv::Mat& in_grey, const cv::Mat& out_grey, int frame) {
+    constexpr std::size_t kFewestTracks = 50;
+    constexpr double kPlanePx = 2;
+    constexpr double kPicturePx = 5;
+    const PointPairs tracks = TracksBetween(in_grey, out_grey);
+    const auto maybe_H_plane = FitHomography(tracks, kPlanePx);
+    const auto maybe_H_picture = FitHomography(tracks, kPicturePx);
+    if (tracks.size() < kFewestTracks || !maybe_H_plane || !maybe_H_picture) {
         ++failed_;
         return;
     }
-    const cv::Matx22d A = maybe_H->get_minor<2, 2>(0, 0);
-    cropping_.push_back(std::min(1.0, 1 / std::sqrt(std::abs(cv::determinant(A)))));
-    distortion_.push_back(SingularRatio(A));
-    distortion_eigen_.push_back(EigenRatio(A));
+    frames_.push_back({.frame = frame,
+                       .plane = Figures(*maybe_H_plane),
+                       .picture = Figures(*maybe_H_picture),
+                       .kept = KeptShare(*maybe_H_picture, in_grey.size(), out_grey.size())});
+    const ViewFrame& figures = frames_.back();
+    if (worst_.in_grey.empty() || figures.picture.distortion < worst_.figures.picture.distortion) {
+        worst_ = {figures, in_grey.clone(), out_grey.clone(), *maybe_H_picture};
+    }
 }
 
 ViewScores ViewMeter::Scores() const {
-    return {.cropping_mean = Mean(cropping_),
-            .cropping_min = Quantile(cropping_, 0),
-            .distortion_min = Quantile(distortion_, 0),
-            .distortion_p01 = Quantile(distortion_, 0.01),
-            .distortion_eigen_min = Quantile(distortion_eigen_, 0),
-            .frames_measured = static_cast<int>(cropping_.size()),
+    const auto plane = [&](double WarpFigures::*figure) {
+        return Collect(Collect(frames_, &ViewFrame::plane), figure);
+    };
+    const auto picture = [&](double WarpFigures::*figure) {
+        return Collect(Collect(frames_, &ViewFrame::picture), figure);
+    };
+    const std::vector<double> kept = Collect(frames_, &ViewFrame::kept);
+    return {.cropping_mean = Mean(plane(&WarpFigures::cropping)),
+            .cropping_min = Quantile(plane(&WarpFigures::cropping), 0),
+            .distortion_min = Quantile(plane(&WarpFigures::distortion), 0),
+            .distortion_p01 = Quantile(plane(&WarpFigures::distortion), 0.01),
+            .distortion_eigen_min = Quantile(plane(&WarpFigures::distortion_eigen), 0),
+            .picture_cropping_mean = Mean(picture(&WarpFigures::cropping)),
+            .picture_distortion_eigen_min = Quantile(picture(&WarpFigures::distortion_eigen), 0),
+            .kept_mean = Mean(kept),
+            .kept_min = Quantile(kept, 0),
             .frames_failed = failed_};
 }
 

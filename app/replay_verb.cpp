@@ -20,8 +20,9 @@ int Fail(int code, const std::string& why) {
 
 std::vector<std::string> EvalArguments(const RigConfig& config, const std::filesystem::path& out,
                                        const std::filesystem::path& json) {
-    std::vector<std::string> arguments{"--json", json.string(), "--panorama",
-                                       (out / "panorama.avi").string()};
+    std::vector<std::string> arguments{"--json",     json.string(),
+                                       "--html",     (out / "quality.html").string(),
+                                       "--panorama", (out / "panorama.avi").string()};
     for (const algo::Unit unit : algo::kUnits) {
         const auto& cameras = config.units[unit].cameras;
         if (cameras.empty()) continue;
@@ -41,7 +42,12 @@ nlohmann::json MeasureQuality(const RigConfig& config, const std::filesystem::pa
     if (RunProgram(SiblingProgram("hitchview-eval"), EvalArguments(config, out, file)) != 0)
         return nullptr;
     std::ifstream in(file);
-    return nlohmann::json::parse(in, nullptr, false);
+    nlohmann::json quality = nlohmann::json::parse(in, nullptr, false);
+    if (!quality.is_object()) return nullptr;
+    // The run's report holds figures only; the rest stays in its own file.
+    quality.erase("series");
+    quality.erase("recordings");
+    return quality;
 }
 
 /// Why the options contradict each other; empty if they do not.

@@ -45,12 +45,12 @@ class RecordingsTest : public testing::Test {
 
     /// Figures of the written views; every eighth frame is matched, which is enough for medians.
     json Measure() const {
-        const auto figures =
+        const auto quality =
             Evaluate({.units = {{{{.in = tractor_, .out = folder_ / "tractor.avi"},
                                   {.in = trailer_, .out = folder_ / "trailer.avi"}}}},
                       .step = 8});
-        EXPECT_TRUE(figures) << figures.error();
-        return figures ? figures.value() : json();
+        EXPECT_TRUE(quality) << quality.error();
+        return quality ? quality.value().figures : json();
     }
 
     [[nodiscard]] double LockedShare() const {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
@@ -73,7 +74,7 @@ TEST(PathMeterTest, AStillVideoHasNoJerk) {
     const PathMeter meter = Measure([](int) { return Pose{}; });
     EXPECT_LT(meter.Scores().jerk_px.value(), 1e-6);
     EXPECT_LT(meter.Scores().rot_jerk_rad.value(), 1e-9);
-    EXPECT_FALSE(meter.Scores().stability);
+    EXPECT_FALSE(meter.Scores().stability.Mean());
     EXPECT_EQ(meter.repeated(), kFrames - 1);
     EXPECT_EQ(meter.lost(), 0);
 }
@@ -105,10 +106,10 @@ TEST(PathMeterTest, ASwayIsStableAndATrembleIsNot) {
         return meter.Scores();
     };
     const PathScores sway = stability(1.0);  // bin 2 of 60 frames
-    EXPECT_GT(sway.stability.value(), 0.97);
-    EXPECT_GT(sway.stability_detrended.value(), 0.97);
+    EXPECT_GT(sway.stability.Smaller().value(), 0.97);
+    EXPECT_GT(sway.stability_detrended.Smaller().value(), 0.97);
     EXPECT_EQ(sway.stability_frames, kFrames);
-    EXPECT_LT(stability(6.0).stability.value(), 0.1);
+    EXPECT_LT(stability(6.0).stability.Smaller().value(), 0.1);
 }
 
 TEST(PathMeterTest, HalfTheShakeIsHalfTheJitter) {
@@ -122,6 +123,15 @@ TEST(PathMeterTest, HalfTheShakeIsHalfTheJitter) {
     EXPECT_FALSE(JitterRatio(shaken(2), Measure([](int) { return Pose{}; }), kRateHz));
 }
 
+TEST(PathMeterTest, TheSpectrumHasAShakesAmplitudeAtItsFrequency) {
+    const PathMeter meter = Measure([](int i) { return Pose{.x_px = 4 * Wave(i, 5)}; });
+    const Spectrum spectrum = ShakeSpectrum(meter.path(), kRateHz);
+    const auto peak = std::ranges::max_element(spectrum.amplitude_px);
+    EXPECT_NEAR(*peak, 4, 0.1);
+    EXPECT_NEAR(spectrum.hz[static_cast<std::size_t>(peak - spectrum.amplitude_px.begin())], 5,
+                0.01);
+}
+
 TEST(PathMeterTest, TheSameVideoGivesTheSameFiguresToTheLastBit) {
     const auto pose = [](int i) { return Pose{.x_px = 4 * Wave(i, 5)}; };
     EXPECT_EQ(Measure(pose).path(), Measure(pose).path());
@@ -131,13 +141,13 @@ TEST(PathMeterTest, TooFewFramesGiveNoFigures) {
     PathMeter meter;
     meter.Append(tests::Texture(kView, 1));
     EXPECT_FALSE(meter.Scores().jerk_px);
-    EXPECT_FALSE(meter.Scores().stability);
+    EXPECT_FALSE(meter.Scores().stability.Mean());
 }
 
 ViewScores MeasureView(const cv::Matx33d& H_out_in, cv::Size out_size) {
     const cv::Mat in = tests::Texture(kView, 3);
     ViewMeter meter;
-    meter.Append(in, Look(in, H_out_in, out_size));
+    meter.Append(in, Look(in, H_out_in, out_size), 0);
     return meter.Scores();
 }
 
@@ -169,9 +179,25 @@ TEST(ViewMeterTest, AShearHasNoEigenvalueDistortionButASingularOne) {
     EXPECT_GT(scores.distortion_eigen_min.value(), 0.97);
 }
 
+TEST(ViewMeterTest, WhatIsShiftedOffTheCanvasIsNotKept) {
+    EXPECT_NEAR(MeasureView(Shift(kView.width / 4.0, 0), kView).kept_min.value(), 0.75, 0.003);
+    EXPECT_NEAR(MeasureView(Shift(200, 40), {700, 320}).kept_min.value(), 1, 0.003);
+}
+
+TEST(ViewMeterTest, TheWorstViewIsTheMostStretchedOne) {
+    const cv::Mat in = tests::Texture(kView, 3);
+    ViewMeter meter;
+    for (const double stretch : {1.0, 1.1, 1.05}) {
+        const cv::Matx33d H(stretch, 0, 0, 0, 1, 0, 0, 0, 1);
+        meter.Append(in, Look(in, H), 10 + static_cast<int>(meter.frames().size()));
+    }
+    EXPECT_EQ(meter.worst().figures.frame, 11);
+    EXPECT_NEAR(meter.worst().H_out_in(0, 0), 1.1, 0.003);
+}
+
 TEST(ViewMeterTest, UnrelatedPicturesAreNotMeasured) {
     ViewMeter meter;
-    meter.Append(tests::Texture(kView, 3), cv::Mat::zeros(kView, CV_8U));
+    meter.Append(tests::Texture(kView, 3), cv::Mat::zeros(kView, CV_8U), 0);
     EXPECT_FALSE(meter.Scores().cropping_mean);
     EXPECT_EQ(meter.Scores().frames_failed, 1);
 }
@@ -198,7 +224,7 @@ TEST(SeamMeterTest, EachOverlapHasItsOwnError) {
     const auto masks = OverlapMasks(layers.tractor, layers.trailer);
     algo::PerOverlap<SeamMeter> meters;
     for (const Overlap overlap : algo::kOverlaps) {
-        meters[overlap].Append(layers.tractor, layers.trailer, masks[overlap]);
+        meters[overlap].Append(layers.tractor, layers.trailer, masks[overlap], 0);
     }
     const SeamScores left = meters[Overlap::kLeft].Scores();
     EXPECT_NEAR(left.median_px.value(), 5, 0.15);
@@ -214,15 +240,20 @@ TEST(SeamMeterTest, TheWorstFrameIsTheWorstMean) {
     for (const double error_px : {0.5, 6.0, 1.0}) {
         const Layers layers({0, 0}, {error_px, 0});
         const auto masks = OverlapMasks(layers.tractor, layers.trailer);
-        meter.Append(layers.tractor, layers.trailer, masks[Overlap::kRight]);
+        meter.Append(layers.tractor, layers.trailer, masks[Overlap::kRight], 0);
     }
     EXPECT_NEAR(meter.Scores().worst_frame_px.value(), 6, 0.2);
+    const WorstSeam& worst = meter.worst();
+    EXPECT_NEAR(worst.figures.mean_px, 6, 0.2);
+    ASSERT_GE(worst.pairs.size(), 12U);
+    EXPECT_NEAR(worst.pairs.second[0].x - worst.pairs.first[0].x, 6, 0.5);
+    EXPECT_LT(worst.pairs.first[0].x, static_cast<float>(worst.tractor_grey.cols));
 }
 
 TEST(SeamMeterTest, WithoutAnOverlapNothingIsKnown) {
     const Layers layers({}, {});
     SeamMeter meter;
-    meter.Append(layers.tractor, layers.trailer, cv::Mat::zeros(layers.tractor.size(), CV_8U));
+    meter.Append(layers.tractor, layers.trailer, cv::Mat::zeros(layers.tractor.size(), CV_8U), 0);
     EXPECT_FALSE(meter.Scores().median_px);
     EXPECT_EQ(meter.Scores().measured_share, 0);
     EXPECT_FALSE(SeamMeter().Scores().measured_share);
@@ -255,16 +286,54 @@ TEST(EvaluateTest, OneUnitGivesItsFiguresAndNullForWhatCannotBeKnown) {
                                      .out = WriteVideo(folder / "out.avi", 1, 48)};
     const auto evaluated = Evaluate(options);
     ASSERT_TRUE(evaluated) << evaluated.error();
-    const nlohmann::json& report = evaluated.value();
+    const nlohmann::json& report = evaluated.value().figures;
     const nlohmann::json& tractor = report["units"]["tractor"];
     EXPECT_EQ(report["frames"], 48);
     EXPECT_NEAR(tractor["jitter_ratio"].get<double>(), 0.25, 0.02);
     EXPECT_NEAR(tractor["cropping_mean"].get<double>(), 1, 0.003);
     EXPECT_NEAR(tractor["jerk_in_px"].get<double>() / tractor["jerk_out_px"].get<double>(), 4, 0.3);
     EXPECT_FALSE(report["units"].contains("trailer"));
+    EXPECT_NEAR(tractor["paper"]["cropping"].get<double>(), 1, 0.003);
+    EXPECT_GT(tractor["paper"]["distortion"].get<double>(), 0.99);
+    EXPECT_LT(tractor["paper"]["stability"].get<double>(), 0.2);
+    const nlohmann::json& series = report["series"]["units"]["tractor"];
+    EXPECT_EQ(series["view"]["frame"], nlohmann::json({0, 10, 20, 30, 40}));
+    EXPECT_EQ(series["view"]["picture"]["distortion"].size(), 5U);
+    ASSERT_EQ(series["in"]["x_px"].size(), 48U);
+    EXPECT_NEAR(series["in"]["x_px"][2].get<double>(), 4 * Wave(2, 5), 0.1);
+    EXPECT_NEAR(series["out"]["x_px"][2].get<double>(), 1 * Wave(2, 5), 0.1);
     EXPECT_TRUE(report["seams"]["left"]["median_px"].is_null());
     EXPECT_TRUE(report["seams"]["right"]["locked_share"].is_null());
     EXPECT_TRUE(report["panorama"]["stability"].is_null());
+}
+
+TEST(EvaluateTest, LayersWithAKnownOffsetHaveItAsStitchingScore) {
+    const tests::TemporaryFolder folder;
+    EvaluationOptions options;
+    for (const Unit unit : algo::kUnits) {
+        options.units[unit].out = folder / std::string(ToString(unit)) + ".avi";
+        cv::VideoWriter writer(options.units[unit].out, cv::CAP_OPENCV_MJPEG,
+                               cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), kRateHz, {640, 240});
+        for (const double error_px : {0.0, 4.0, 1.0}) {
+            const Layers layers({0, 0}, {0, error_px});
+            cv::Mat bgr;
+            cv::cvtColor(unit == Unit::kTractor ? layers.tractor : layers.trailer, bgr,
+                         cv::COLOR_GRAY2BGR);
+            writer.write(bgr);
+        }
+    }
+    const auto evaluated = Evaluate(options);
+    ASSERT_TRUE(evaluated) << evaluated.error();
+    const nlohmann::json& figures = evaluated.value().figures;
+    const auto score_px = [&](const char* seam) {
+        return figures["seams"][seam]["paper"]["stitching_score_px"].get<double>();
+    };
+    EXPECT_NEAR(score_px("right"), 4, 0.2);
+    EXPECT_LT(score_px("left"), 0.3);
+    EXPECT_NEAR(figures["seams"]["right"]["vertical_p95_px"].get<double>(), 4, 0.3);
+    EXPECT_LT(figures["seams"]["right"]["horizontal_median_px"].get<double>(), 0.2);
+    EXPECT_EQ(figures["series"]["seams"]["right"]["frame"], nlohmann::json({0, 1, 2}));
+    EXPECT_EQ(evaluated.value().worst_seams[Overlap::kRight].figures.frame, 1);
 }
 
 TEST(EvaluateTest, WhatCannotBeReadIsNamed) {
