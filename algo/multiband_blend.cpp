@@ -10,8 +10,8 @@ namespace {
 /// Below this the rest of the picture is another camera's.
 constexpr float kWhole = 0.999F;
 /// Samples to a side of the square whose mean is level 0, and canvas px from one to the next.
-constexpr int kSamples = 6;
-constexpr int kSampleStep = 2;
+constexpr int kSamples = 4;
+constexpr int kSampleStep = 3;
 
 bool Inside(const CameraFrame& frame, const ComposedMap::Corner& corner) {
     return corner.sees && frame.present() && corner.x >= 0 && corner.y >= 0 &&
@@ -32,18 +32,20 @@ int StepAt(const ComposedMap& map, int source, int row, int col) {
 
 /// Mean of kN x kN values round (x, y), of the nearest ones where the square reaches outside.
 template <int kN, int kBytes>
-float MeanOf(const std::uint8_t* plane, int stride_bytes, cv::Size size, Eigen::Vector2f centre,
-             int step) {
-    const int x0 =
-        static_cast<int>(std::lround(centre.x() - 0.5F * static_cast<float>((kN - 1) * step)));
-    const int y0 =
-        static_cast<int>(std::lround(centre.y() - 0.5F * static_cast<float>((kN - 1) * step)));
+float MeanOf(const std::uint8_t* plane, int stride_bytes, cv::Size size,
+             const Eigen::Vector2f& centre, int step) {
+    const float half = 0.5F * static_cast<float>((kN - 1) * step);
+    std::array<int, kN> bytes;
+    for (int c = 0; c < kN; ++c) {
+        const int x = static_cast<int>(centre.x() - half + 0.5F) + c * step;
+        bytes[static_cast<std::size_t>(c)] = kBytes * std::clamp(x, 0, size.width - 1);
+    }
     int sum = 0;
     for (int r = 0; r < kN; ++r) {
-        const int y = std::clamp(y0 + r * step, 0, size.height - 1);
-        const std::uint8_t* row = plane + static_cast<std::ptrdiff_t>(y) * stride_bytes;
-        for (int c = 0; c < kN; ++c)
-            sum += row[kBytes * std::clamp(x0 + c * step, 0, size.width - 1)];
+        const int y = static_cast<int>(centre.y() - half + 0.5F) + r * step;
+        const std::uint8_t* row =
+            plane + static_cast<std::ptrdiff_t>(std::clamp(y, 0, size.height - 1)) * stride_bytes;
+        for (const int byte : bytes) sum += row[byte];
     }
     return static_cast<float>(sum) / (kN * kN);
 }
@@ -84,14 +86,11 @@ MultibandBlend::MultibandBlend(const ComposedMap& map)
 void MultibandBlend::Update(const ComposedMap& map, const RigPictures& pictures,
                             TaskRunner& runner) {
     runner.Run(rows_, [&](int row) { ReadMasks(map, pictures.frames, row); });
-    runner.Run(rows_, [&](int row) { FindJoints(row); });
-    runner.Run(cols_, [&](int col) {
-        WidenJoints(At(0, col), static_cast<std::size_t>(cols_), rows_, false);
-    });
+    FindJoints();
     for (int level = 1; level <= kLevels; ++level)
         runner.Run(rows_, [&](int row) { BlurMasks(level, row); });
     runner.Run(rows_, [&](int row) { ReadColours(map, pictures, row); });
-    for (int level = 0; level < kLevels; ++level) {
+    for (int level = 0; level + 1 < kLevels; ++level) {
         runner.Run(rows_, [&](int row) { AddBand(level, row); });
         std::swap(level_, next_level_);
     }
@@ -104,6 +103,7 @@ void MultibandBlend::ReadMasks(const ComposedMap& map, const RigFrames& frames, 
         mask.setZero();
         for (int s = 0; s < sources_; ++s) {
             const ComposedMap::Corner& corner = map.corner(s, row, col);
+            if (corner.weight <= 0) continue;
             const CameraFrame& frame =
                 frames[map.unit_of(s)][static_cast<std::size_t>(map.camera_of(s))];
             if (Inside(frame, corner)) mask[s] = corner.weight;
@@ -116,19 +116,25 @@ void MultibandBlend::ReadMasks(const ComposedMap& map, const RigFrames& frames, 
     }
 }
 
-void MultibandBlend::FindJoints(int row) {
-    for (int col = 0; col < cols_; ++col) {
-        const std::size_t at = At(row, col);
-        joint_[at] = Joint::kFar;
-        if (most_[at] < 0) continue;
-        const auto differs = [&](std::size_t other) {
-            return most_[other] >= 0 && most_[other] != most_[at];
-        };
-        const bool beside = (ring_ || col + 1 < cols_) && differs(At(row, col + 1));
-        const bool below = row + 1 < rows_ && differs(At(row + 1, col));
-        if (beside || below || mask_[0][at][most_[at]] < kWhole) joint_[at] = Joint::kHere;
+void MultibandBlend::FindJoints() {
+    for (int row = 0; row < rows_; ++row) {
+        for (int col = 0; col < cols_; ++col)
+            joint_[At(row, col)] = IsJoint(row, col) ? Joint::kHere : Joint::kFar;
+        WidenJoints(At(row, 0), 1, cols_, ring_);
     }
-    WidenJoints(At(row, 0), 1, cols_, ring_);
+    for (int col = 0; col < cols_; ++col)
+        WidenJoints(At(0, col), static_cast<std::size_t>(cols_), rows_, false);
+}
+
+bool MultibandBlend::IsJoint(int row, int col) const {
+    const std::size_t at = At(row, col);
+    if (most_[at] < 0) return false;
+    const auto differs = [&](std::size_t other) {
+        return most_[other] >= 0 && most_[other] != most_[at];
+    };
+    return mask_[0][at][most_[at]] < kWhole ||
+           ((ring_ || col + 1 < cols_) && differs(At(row, col + 1))) ||
+           (row + 1 < rows_ && differs(At(row + 1, col)));
 }
 
 /// Along a line of corners: marks what lies within reach of what was marked before.
@@ -152,17 +158,18 @@ void MultibandBlend::WidenJoints(std::size_t first, std::size_t step, int count,
 }
 
 MultibandBlend::Neighbours MultibandBlend::NeighboursOf(int row, int col, int spacing) const {
+    int left = col - spacing;
+    int right = col + spacing;
+    if (ring_ && left < 0) left += cols_;
+    if (ring_ && right >= cols_) right -= cols_;
     Neighbours neighbours;
     for (const int down : {-1, 0, 1}) {
         const int other_row = row + down * spacing;
         if (other_row < 0 || other_row >= rows_) continue;
-        for (const int right : {-1, 0, 1}) {
-            int other_col = col + right * spacing;
-            if (ring_) other_col = (other_col + cols_) % cols_;
-            if (other_col < 0 || other_col >= cols_) continue;
-            neighbours.push_back(
-                {At(other_row, other_col), (down == 0 ? 2.0F : 1.0F) * (right == 0 ? 2.0F : 1.0F)});
-        }
+        const float weight = down == 0 ? 2.0F : 1.0F;
+        if (left >= 0) neighbours.push_back({At(other_row, left), weight});
+        neighbours.push_back({At(other_row, col), 2 * weight});
+        if (right < cols_) neighbours.push_back({At(other_row, right), weight});
     }
     return neighbours;
 }
@@ -217,26 +224,30 @@ MultibandBlend::Colour MultibandBlend::Blurred(int source, const Neighbours& nei
     return sum / weight;
 }
 
-/// The last band is all that is left.
+/// Level `level` less the next one; with the last of them also what is left.
 void MultibandBlend::AddBand(int level, int row) {
-    const bool last = level + 1 == kLevels;
+    const bool last = level + 2 == kLevels;
     for (int col = 0; col < cols_; ++col) {
         const std::size_t at = At(row, col);
         if (shown_[at] == 0) continue;
         const Masks& mask = mask_[static_cast<std::size_t>(level + 1)][at];
         const Neighbours neighbours = NeighboursOf(row, col, 1 << level);
         Colour band = Colour::Zero();
-        float weight = 0;
+        Colour rest = Colour::Zero();
+        float band_weight = 0;
+        float rest_weight = 0;
         for (int s = 0; s < sources_; ++s) {
             if (!Shown(s, at)) continue;
             const auto source = static_cast<std::size_t>(s);
-            const Colour& here = level_[source][at];
-            Colour& blurred = next_level_[source][at];
-            if (!last) blurred = Blurred(s, neighbours);
-            band += mask[s] * (last ? here : Colour(here - blurred));
-            weight += mask[s];
+            const Colour blurred = Blurred(s, neighbours);
+            next_level_[source][at] = blurred;
+            band += mask[s] * (level_[source][at] - blurred);
+            band_weight += mask[s];
+            rest += mask_[kLevels][at][s] * blurred;
+            rest_weight += mask_[kLevels][at][s];
         }
-        if (weight > 0) coarse_[at] += band / weight;
+        if (band_weight > 0) coarse_[at] += band / band_weight;
+        if (last) coarse_[at] += rest / rest_weight;
     }
 }
 

@@ -31,6 +31,11 @@ class MultibandBlend {
 
     void Update(const ComposedMap& map, const RigPictures& pictures, TaskRunner& runner);
 
+    /// False where nothing is added at any corner of a block.
+    [[nodiscard]] bool Shifts(int row, int col) const {
+        return (shown_[At(row, col)] | shown_[At(row, col + 1)] | shown_[At(row + 1, col)] |
+                shown_[At(row + 1, col + 1)]) != 0;
+    }
     /// Added to what a camera of the map shows at a corner, before it is weighted.
     [[nodiscard]] Colour shift(int source, int row, int col) const {
         const std::size_t at = At(row, col);
@@ -50,7 +55,8 @@ class MultibandBlend {
     using Neighbours = FixedVector<Neighbour, 9>;
 
     void ReadMasks(const ComposedMap& map, const RigFrames& frames, int row);
-    void FindJoints(int row);
+    void FindJoints();
+    [[nodiscard]] bool IsJoint(int row, int col) const;
     void WidenJoints(std::size_t first, std::size_t step, int count, bool round);
     void BlurMasks(int level, int row);
     void ReadColours(const ComposedMap& map, const RigPictures& pictures, int row);

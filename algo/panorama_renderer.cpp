@@ -83,6 +83,7 @@ struct Shift {
 
 Shift ShiftOf(const MultibandBlend& bands, int source, int row, int col) {
     Shift shift{};
+    if (!bands.Shifts(row, col)) return shift;
     for (std::size_t k = 0; k < 4; ++k) {
         const MultibandBlend::Colour colour =
             bands.shift(source, row + static_cast<int>(k / 2), col + static_cast<int>(k % 2));
