@@ -25,4 +25,13 @@ struct CameraFrame {
 using UnitFrames = std::array<CameraFrame, kMaxCameras>;
 using RigFrames = PerUnit<UnitFrames>;
 
+/// Brightness of each camera relative to the others; multiplies grey and colour.
+using CameraGains = PerUnit<std::array<float, kMaxCameras>>;
+
+/// What the cameras saw, and how bright it is to be shown. Borrowed.
+struct RigPictures {
+    const RigFrames& frames;
+    const CameraGains& gains;
+};
+
 }  // namespace hitchview::algo

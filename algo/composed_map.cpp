@@ -11,17 +11,13 @@ using Eigen::Vector3d;
 
 /// Share of the unit beyond the seam: it fills what the preferred unit leaves uncovered.
 constexpr float kFiller = 1e-3F;
-/// A column belongs to the overlap if this share of its corners is covered by both units.
-constexpr double kOverlapShare = 0.6;
+/// Share of a camera without a picture where it would have seen something: the renderer then
+/// knows, and any other camera outweighs it.
+constexpr float kAbsent = 1e-6F;
 
 bool Inside(const UnitGeometry& geometry, int camera, const Vector2d& pixel) {
     return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= geometry.camera_width_px(camera) - 1 &&
            pixel.y() <= geometry.camera_height_px(camera) - 1;
-}
-
-double SmoothStep(double t) {
-    const double s = std::clamp(t, 0.0, 1.0);
-    return s * s * (3 - 2 * s);
 }
 
 }  // namespace
@@ -32,9 +28,10 @@ ComposedMap::ComposedMap(const Projection& canvas,
     : canvas_(canvas),
       canvas_mesh_(canvas),
       geometry_(&geometry),
-      seam_(seam),
       rows_((canvas.height_px + kBlock - 1) / kBlock + 1),
-      cols_((canvas.width_px + kBlock - 1) / kBlock + 1) {
+      cols_((canvas.width_px + kBlock - 1) / kBlock + 1),
+      seams_(canvas, rows_, cols_, kBlock, seam),
+      seam_cost_(rows_ * cols_, {}) {
     const auto corners = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_);
     for (const Unit unit : kUnits) {
         first_source_[unit] = static_cast<int>(sources_.size());
@@ -48,9 +45,24 @@ ComposedMap::ComposedMap(const Projection& canvas,
 }
 
 void ComposedMap::Build(const Composition& composition, TaskRunner& runner) {
+    for (const Unit unit : kUnits) present_[unit].set();
+    BuildFor(composition, nullptr, runner);
+}
+
+void ComposedMap::Build(const Composition& composition, const RigPictures& pictures,
+                        TaskRunner& runner) {
+    for (const Unit unit : kUnits) {
+        for (std::size_t i = 0; i < kMaxCameras; ++i)
+            present_[unit][i] = pictures.frames[unit][i].present();
+    }
+    BuildFor(composition, &pictures, runner);
+}
+
+void ComposedMap::BuildFor(const Composition& composition, const RigPictures* pictures,
+                           TaskRunner& runner) {
     for (const Unit unit : kUnits) M_view_canvas_[unit] = composition.M_canvas_view[unit].inverse();
     runner.Run(rows_, [&](int row) { LocateRow(composition, row); });
-    UpdateSeams(composition);
+    UpdateSeams(composition, pictures, runner);
     selected_.reset();
     runner.Run(rows_, [&](int row) { WeightRow(row); });
 }
@@ -75,7 +87,7 @@ void ComposedMap::LocateCorner(const Composition& composition, Unit unit, int ro
     ray = geometry.view().Ray(view_px - Sample(view_mesh, composition.view_offset[unit], view_px));
 
     UnitGeometry::Sights sights;
-    geometry.See(ray, sights);
+    geometry.See(ray, present_[unit], sights);
     for (int i = 0; i < geometry.cameras(); ++i) {
         Source& source = sources_[static_cast<std::size_t>(first_source_[unit] + i)];
         source.corners[at].sees = false;
@@ -87,66 +99,67 @@ void ComposedMap::LocateCorner(const Composition& composition, Unit unit, int ro
         source.corners[at] = {static_cast<float>(sight.pixel.x()),
                               static_cast<float>(sight.pixel.y()), 0, true};
         source.share[at] = static_cast<float>(sight.weight);
-        if (sight.weight > 0 && Inside(geometry, sight.camera, sight.pixel)) covered_[unit][at] = 1;
+        if (!Inside(geometry, sight.camera, sight.pixel)) continue;
+        if (sight.weight > 0) covered_[unit][at] = 1;
+        if (!present_[unit][static_cast<std::size_t>(sight.camera)]) source.share[at] = kAbsent;
     }
 }
 
-double ComposedMap::MiddleOfOverlap(int from_col, int to_col, bool& known) const {
-    int first = -1;
-    int last = -1;
-    for (int col = from_col; col < to_col; ++col) {
-        int both = 0;
-        int any = 0;
-        for (int row = 0; row < rows_; ++row) {
-            const bool tractor = covered_[Unit::kTractor][At(row, col)] != 0;
-            const bool trailer = covered_[Unit::kTrailer][At(row, col)] != 0;
-            both += tractor && trailer ? 1 : 0;
-            any += tractor || trailer ? 1 : 0;
-        }
-        if (any == 0 || both < kOverlapShare * any) continue;
-        if (first < 0) first = col;
-        last = col;
-    }
-    known = first >= 0;
-    return 0.5 * (first + last) * kBlock - 0.5;
-}
-
-void ComposedMap::SetSeam(Overlap overlap, double target, bool known) {
-    if (!known) return;
-    double& seam = seam_px_[overlap];
-    seam = seam_known_[overlap] ? seam + seam_.tracking_gain * (target - seam) : target;
-    seam_known_[overlap] = true;
-}
-
-void ComposedMap::UpdateSeams(const Composition& composition) {
+void ComposedMap::UpdateSeams(const Composition& composition, const RigPictures* pictures,
+                              TaskRunner& runner) {
     if (!(*geometry_)[Unit::kTrailer]) return;
-    bool known = false;
-    if (canvas_.IsRing()) {
-        const double left = MiddleOfOverlap(0, cols_ / 2, known);
-        SetSeam(Overlap::kLeft, left, known);
-        const double right = MiddleOfOverlap(cols_ / 2, cols_, known);
-        SetSeam(Overlap::kRight, right, known);
-        return;
+    seams_.FindOverlaps(covered_);
+    if (pictures != nullptr)
+        runner.Run(rows_, [&](int row) { CompareUnits(composition, *pictures, row); });
+    if (!canvas_.IsRing()) {
+        PerUnit<double> middle_px;
+        for (const Unit unit : kUnits) {
+            const Projection& view = (*geometry_)[unit]->view();
+            middle_px[unit] =
+                canvas_.Pixel(composition.M_canvas_view[unit] * view.Ray(view.Centre())).x();
+        }
+        seams_.PlaceViews(middle_px);
     }
-    const auto middle = [&](Unit unit) {
-        const Projection& view = (*geometry_)[unit]->view();
-        return canvas_.Pixel(composition.M_canvas_view[unit] * view.Ray(view.Centre())).x();
-    };
-    trailer_left_ = middle(Unit::kTrailer) < middle(Unit::kTractor);
-    const double seam = MiddleOfOverlap(0, cols_, known);
-    // Without an overlap the seam lies half way between the two views.
-    SetSeam(Overlap::kRight, known ? seam : 0.5 * (middle(Unit::kTrailer) + middle(Unit::kTractor)),
-            true);
+    seams_.Follow(pictures != nullptr ? seam_cost_.cost() : std::span<const float>());
 }
 
-double ComposedMap::TractorShare(double x) const {
-    const double width = 2 * seam_.half_width_px;
-    const auto beyond = [&](double seam) { return SmoothStep((x - seam) / width + 0.5); };
-    if (!canvas_.IsRing()) {
-        const double right_of_seam = beyond(seam_px_[Overlap::kRight]);
-        return trailer_left_ ? right_of_seam : 1 - right_of_seam;
+void ComposedMap::CompareUnits(const Composition& composition, const RigPictures& pictures,
+                               int row) {
+    for (const Overlap overlap : kOverlaps) {
+        const SeamPath::Range& range = seams_.overlap(overlap);
+        for (int col = range.first; col <= range.last; ++col) {
+            const std::size_t at = At(row, col);
+            if (covered_[Unit::kTractor][at] == 0 || covered_[Unit::kTrailer][at] == 0) {
+                seam_cost_.ObserveOne(at);
+                continue;
+            }
+            seam_cost_.ObserveBoth(at, PatchOf(pictures, Unit::kTractor, at),
+                                   PatchOf(pictures, Unit::kTrailer, at),
+                                   BendAt(composition, CornerPixel(row, col)));
+        }
     }
-    return std::min(beyond(seam_px_[Overlap::kLeft]), 1 - beyond(seam_px_[Overlap::kRight]));
+}
+
+/// From the camera that has the largest share; the unit covers the corner.
+GreyPatch ComposedMap::PatchOf(const RigPictures& pictures, Unit unit, std::size_t at) const {
+    const Source* best = &sources_[static_cast<std::size_t>(first_source_[unit])];
+    for (const Source& source : sources_) {
+        if (source.unit == unit && source.share[at] > best->share[at]) best = &source;
+    }
+    const auto camera = static_cast<std::size_t>(best->camera);
+    return ReadGreyPatch(pictures.frames[unit][camera], pictures.gains[unit][camera],
+                         best->corners[at].x, best->corners[at].y);
+}
+
+float ComposedMap::BendAt(const Composition& composition, const Vector2d& pixel) const {
+    const auto slope = [&](const Vector2d& step) {
+        return (Sample(canvas_mesh_, composition.discrepancy, pixel + step) -
+                Sample(canvas_mesh_, composition.discrepancy, pixel - step))
+                   .norm() /
+               (2 * step.norm());
+    };
+    constexpr double kStep = 2 * kBlock;
+    return static_cast<float>(slope({kStep, 0}) + slope({0, kStep}));
 }
 
 void ComposedMap::WeightRow(int row) {
@@ -154,7 +167,7 @@ void ComposedMap::WeightRow(int row) {
     for (int col = 0; col < cols_; ++col) {
         const std::size_t at = At(row, col);
         const auto tractor =
-            static_cast<float>(two ? TractorShare(CornerPixel(row, col).x()) : 1.0);
+            static_cast<float>(two ? seams_.TractorShare(row, CornerPixel(row, col).x()) : 1.0);
         PerUnit<float> share{{tractor, 1 - tractor}};
         if (selected_) {
             share[*selected_] = 1;

@@ -2,17 +2,14 @@
 
 #include <vector>
 
-#include "algo/stitching_motion_field.hpp"
+#include "algo/camera_frame.hpp"
+#include "algo/composition.hpp"
+#include "algo/seam_cost.hpp"
 #include "algo/task_runner.hpp"
-#include "algo/unified_vertex_motion.hpp"
 #include "algo/unit_geometry.hpp"
+#include "algo/unit_seams.hpp"
 
 namespace hitchview::algo {
-
-struct SeamOptions {
-    double half_width_px = 12;    ///< of the feathered strip
-    double tracking_gain = 0.08;  ///< share of the way to the middle of the overlap, per frame
-};
 
 /// From canvas pixels straight to camera pixels: calibration, placement, stabilisation, stitching
 /// and seam in one map, exact at the corners of blocks of kBlock x kBlock canvas pixels, to be
@@ -32,12 +29,16 @@ class ComposedMap {
     ComposedMap(const Projection& canvas, const PerUnit<std::optional<UnitGeometry>>& geometry,
                 const SeamOptions& seam);
 
-    /// The map of one frame. `only`: that unit alone, without seams (a view before blending).
+    /// The map of one frame: every camera counts as present, the seams are straight.
     void Build(const Composition& composition, TaskRunner& runner);
-    /// Afterwards: the same map with one unit alone.
+    /// The same for given pictures: the seams go where the units agree, and a camera without a
+    /// picture leaves its place to what else sees it, keeping a share too small to show elsewhere.
+    void Build(const Composition& composition, const RigPictures& pictures, TaskRunner& runner);
+    /// Afterwards: the same map with one unit alone, without seams (a view before blending).
     void SelectUnit(Unit unit);
     void SelectBoth();
 
+    [[nodiscard]] bool is_ring() const { return canvas_.IsRing(); }
     [[nodiscard]] int block_rows() const { return rows_ - 1; }
     [[nodiscard]] int block_cols() const { return cols_ - 1; }
     [[nodiscard]] int cameras() const { return static_cast<int>(sources_.size()); }
@@ -51,8 +52,14 @@ class ComposedMap {
         return sources_[static_cast<std::size_t>(source)]
             .corners[static_cast<std::size_t>(row * cols_ + col)];
     }
-    /// Column of the seam, canvas px.
-    [[nodiscard]] const PerOverlap<double>& seam_px() const { return seam_px_; }
+    /// Column of the seam at a row of corners, canvas px.
+    [[nodiscard]] double seam_px(Overlap overlap, int row) const {
+        return seams_.path(overlap).x_px(row);
+    }
+    /// The same, on average over the rows.
+    [[nodiscard]] PerOverlap<double> seam_px() const {
+        return {{seams_.path(Overlap::kLeft).mean_px(), seams_.path(Overlap::kRight).mean_px()}};
+    }
 
  private:
     struct Source {
@@ -62,13 +69,15 @@ class ComposedMap {
         std::vector<float> share;  ///< in the unit's view
     };
 
+    void BuildFor(const Composition& composition, const RigPictures* pictures, TaskRunner& runner);
     void LocateRow(const Composition& composition, int row);
     void LocateCorner(const Composition& composition, Unit unit, int row, int col);
-    void UpdateSeams(const Composition& composition);
-    void SetSeam(Overlap overlap, double target, bool known);
-    [[nodiscard]] double MiddleOfOverlap(int from_col, int to_col, bool& known) const;
+    void UpdateSeams(const Composition& composition, const RigPictures* pictures,
+                     TaskRunner& runner);
+    void CompareUnits(const Composition& composition, const RigPictures& pictures, int row);
+    [[nodiscard]] GreyPatch PatchOf(const RigPictures& pictures, Unit unit, std::size_t at) const;
+    [[nodiscard]] float BendAt(const Composition& composition, const Eigen::Vector2d& pixel) const;
     void WeightRow(int row);
-    [[nodiscard]] double TractorShare(double x) const;
     [[nodiscard]] Eigen::Vector2d CornerPixel(int row, int col) const {
         return {col * double{kBlock} - 0.5, row * double{kBlock} - 0.5};
     }
@@ -79,16 +88,15 @@ class ComposedMap {
     Projection canvas_;
     Mesh canvas_mesh_;
     const PerUnit<std::optional<UnitGeometry>>* geometry_;
-    SeamOptions seam_;
     int rows_;  // of corners
     int cols_;
     std::vector<Source> sources_;
     PerUnit<int> first_source_;
-    PerUnit<std::vector<std::uint8_t>> covered_;  // by the unit, per corner
+    UnitSeams seams_;
+    SeamCost seam_cost_;
+    UnitSeams::Coverage covered_;
+    PerUnit<CameraMask> present_;
     PerUnit<Eigen::Matrix3d> M_view_canvas_;
-    PerOverlap<double> seam_px_;
-    PerOverlap<bool> seam_known_{{false, false}};
-    bool trailer_left_ = false;  // plane: the trailer lies to the left of the tractor
     std::optional<Unit> selected_;
 };
 

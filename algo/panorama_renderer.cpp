@@ -65,12 +65,49 @@ std::uint8_t Round(float value) {
     return static_cast<std::uint8_t>(value + 0.5F);
 }
 
+/// What is added to a source's luma, u and v over one block.
+struct Shift {
+    std::array<std::array<float, 4>, 3> of;  // by channel, corners as in Patch
+
+    /// Too small to show.
+    [[nodiscard]] bool IsNothing() const {
+        constexpr float kLeast = 0.25F;
+        for (const auto& channel : of) {
+            for (const float value : channel) {
+                if (std::abs(value) > kLeast) return false;
+            }
+        }
+        return true;
+    }
+};
+
+Shift ShiftOf(const MultibandBlend& bands, int source, int row, int col) {
+    Shift shift{};
+    if (!bands.Shifts(row, col)) return shift;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const MultibandBlend::Colour colour =
+            bands.shift(source, row + static_cast<int>(k / 2), col + static_cast<int>(k % 2));
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            shift.of[channel][k] = colour[static_cast<int>(channel)];
+    }
+    return shift;
+}
+
+std::uint8_t RoundMean(float sum, float weight) {
+    return Round(std::clamp(sum / weight, 0.0F, 255.0F));
+}
+
+std::uint8_t RoundShifted(std::uint8_t value, float shift) {
+    return Round(std::clamp(static_cast<float>(value) + shift, 0.0F, 255.0F));
+}
+
 }  // namespace
 
 struct PanoramaRenderer::BlockSource {
     const CameraFrame* frame;
     const CameraLut* lut;
     Patch patch;
+    Shift shift;
 
     [[nodiscard]] bool Sees(float x, float y) const {
         return x >= 0 && y >= 0 && x <= static_cast<float>(frame->width_px - 1) &&
@@ -111,33 +148,48 @@ struct PanoramaRenderer::Block {
         return (((at_x + at_y) >> 3) & 1) != 0 ? kLight : kDark;
     }
 
+    template <bool kShifted>
     void CopyLuma(const PanoramaPlanes& out) const {
         const BlockSource& source = sources[0];
         std::array<float, kBlock> xs;
         std::array<float, kBlock> ys;
+        std::array<float, kBlock> shifts{};
         for (int r = 0; r < height; ++r) {
             InterpolateRow<kBlock>(source.patch.x, r, xs);
             InterpolateRow<kBlock>(source.patch.y, r, ys);
+            if constexpr (kShifted) InterpolateRow<kBlock>(source.shift.of[0], r, shifts);
             std::uint8_t* to = out.y + static_cast<std::ptrdiff_t>(y + r) * out.y_stride_bytes + x;
             for (int c = 0; c < width; ++c) {
                 const auto i = static_cast<std::size_t>(c);
-                to[c] = source.Luma(xs[i], ys[i]);
+                const std::uint8_t luma = source.Luma(xs[i], ys[i]);
+                to[c] = kShifted ? RoundShifted(luma, shifts[i]) : luma;
             }
         }
     }
 
+    template <bool kShifted>
     void CopyChroma(const PanoramaPlanes& out) const {
         const BlockSource& source = sources[0];
         std::array<float, kChromaBlock> xs;
         std::array<float, kChromaBlock> ys;
+        std::array<float, kChromaBlock> us{};
+        std::array<float, kChromaBlock> vs{};
         for (int r = 0; r < height / 2; ++r) {
             InterpolateRow<kChromaBlock>(source.patch.x, r, xs);
             InterpolateRow<kChromaBlock>(source.patch.y, r, ys);
+            if constexpr (kShifted) {
+                InterpolateRow<kChromaBlock>(source.shift.of[1], r, us);
+                InterpolateRow<kChromaBlock>(source.shift.of[2], r, vs);
+            }
             const auto to =
                 static_cast<std::ptrdiff_t>(y / 2 + r) * out.chroma_stride_bytes + x / 2;
             for (int c = 0; c < width / 2; ++c) {
                 const auto i = static_cast<std::size_t>(c);
                 source.Chroma(xs[i], ys[i], out.u[to + c], out.v[to + c]);
+                if constexpr (kShifted) {
+                    out.u[to + c] = RoundShifted(out.u[to + c], us[i]);
+                    out.v[to + c] = RoundShifted(out.v[to + c], vs[i]);
+                }
             }
         }
     }
@@ -146,6 +198,7 @@ struct PanoramaRenderer::Block {
         std::array<float, kBlock> xs;
         std::array<float, kBlock> ys;
         std::array<float, kBlock> ws;
+        std::array<float, kBlock> shifts;
         for (int r = 0; r < height; ++r) {
             std::array<float, kBlock> sum{};
             std::array<float, kBlock> weight{};
@@ -153,9 +206,10 @@ struct PanoramaRenderer::Block {
                 InterpolateRow<kBlock>(source.patch.x, r, xs);
                 InterpolateRow<kBlock>(source.patch.y, r, ys);
                 InterpolateRow<kBlock>(source.patch.weight, r, ws);
+                InterpolateRow<kBlock>(source.shift.of[0], r, shifts);
                 for (std::size_t i = 0; i < kBlock; ++i) {
                     if (ws[i] <= 0 || !source.Sees(xs[i], ys[i])) continue;
-                    sum[i] += ws[i] * static_cast<float>(source.Luma(xs[i], ys[i]));
+                    sum[i] += ws[i] * (static_cast<float>(source.Luma(xs[i], ys[i])) + shifts[i]);
                     weight[i] += ws[i];
                 }
             }
@@ -163,7 +217,7 @@ struct PanoramaRenderer::Block {
             for (int c = 0; c < width; ++c) {
                 const auto i = static_cast<std::size_t>(c);
                 to[c] =
-                    weight[i] > 0 ? Round(sum[i] / weight[i]) : EmptyLuma(no_data, x + c, y + r);
+                    weight[i] > 0 ? RoundMean(sum[i], weight[i]) : EmptyLuma(no_data, x + c, y + r);
             }
         }
     }
@@ -172,6 +226,8 @@ struct PanoramaRenderer::Block {
         std::array<float, kChromaBlock> xs;
         std::array<float, kChromaBlock> ys;
         std::array<float, kChromaBlock> ws;
+        std::array<float, kChromaBlock> us;
+        std::array<float, kChromaBlock> vs;
         for (int r = 0; r < height / 2; ++r) {
             std::array<float, kChromaBlock> sum_u{};
             std::array<float, kChromaBlock> sum_v{};
@@ -180,13 +236,15 @@ struct PanoramaRenderer::Block {
                 InterpolateRow<kChromaBlock>(source.patch.x, r, xs);
                 InterpolateRow<kChromaBlock>(source.patch.y, r, ys);
                 InterpolateRow<kChromaBlock>(source.patch.weight, r, ws);
+                InterpolateRow<kChromaBlock>(source.shift.of[1], r, us);
+                InterpolateRow<kChromaBlock>(source.shift.of[2], r, vs);
                 for (std::size_t i = 0; i < kChromaBlock; ++i) {
                     if (ws[i] <= 0 || !source.Sees(xs[i], ys[i])) continue;
                     std::uint8_t u;
                     std::uint8_t v;
                     source.Chroma(xs[i], ys[i], u, v);
-                    sum_u[i] += ws[i] * static_cast<float>(u);
-                    sum_v[i] += ws[i] * static_cast<float>(v);
+                    sum_u[i] += ws[i] * (static_cast<float>(u) + us[i]);
+                    sum_v[i] += ws[i] * (static_cast<float>(v) + vs[i]);
                     weight[i] += ws[i];
                 }
             }
@@ -194,8 +252,8 @@ struct PanoramaRenderer::Block {
                 static_cast<std::ptrdiff_t>(y / 2 + r) * out.chroma_stride_bytes + x / 2;
             for (int c = 0; c < width / 2; ++c) {
                 const auto i = static_cast<std::size_t>(c);
-                out.u[to + c] = weight[i] > 0 ? Round(sum_u[i] / weight[i]) : kNeutral;
-                out.v[to + c] = weight[i] > 0 ? Round(sum_v[i] / weight[i]) : kNeutral;
+                out.u[to + c] = weight[i] > 0 ? RoundMean(sum_u[i], weight[i]) : kNeutral;
+                out.v[to + c] = weight[i] > 0 ? RoundMean(sum_v[i], weight[i]) : kNeutral;
             }
         }
     }
@@ -219,11 +277,20 @@ void PanoramaRenderer::SetGains(const CameraGains& gains) {
 
 void PanoramaRenderer::Render(const ComposedMap& map, const RigFrames& frames, NoData no_data,
                               const PanoramaPlanes& out, TaskRunner& runner) const {
-    runner.Run(map.block_rows(), [&](int row) { RenderBlockRow(map, frames, no_data, out, row); });
+    const Scene scene{map, frames, nullptr, no_data};
+    runner.Run(map.block_rows(), [&](int row) { RenderBlockRow(scene, out, row); });
 }
 
-bool PanoramaRenderer::Gather(const ComposedMap& map, const RigFrames& frames, int row, int col,
-                              Block& block) const {
+void PanoramaRenderer::RenderBlended(const ComposedMap& map, const RigFrames& frames,
+                                     const MultibandBlend& bands, const PanoramaPlanes& out,
+                                     TaskRunner& runner) const {
+    const Scene scene{map, frames, &bands, NoData::kPattern};
+    runner.Run(map.block_rows(), [&](int row) { RenderBlockRow(scene, out, row); });
+}
+
+/// True if the block is no more than one camera's.
+bool PanoramaRenderer::Gather(const Scene& scene, int row, int col, Block& block) const {
+    const ComposedMap& map = scene.map;
     block.sources.clear();
     block.camera_missing = false;
     for (int s = 0; s < map.cameras(); ++s) {
@@ -242,31 +309,35 @@ bool PanoramaRenderer::Gather(const ComposedMap& map, const RigFrames& frames, i
         }
         if (!used || !sees) continue;
         const auto camera = static_cast<std::size_t>(map.camera_of(s));
-        source.frame = &frames[map.unit_of(s)][camera];
+        source.frame = &scene.frames[map.unit_of(s)][camera];
         source.lut = &luts_[map.unit_of(s)][camera];
-        if (source.frame->present()) {
-            block.sources.push_back(source);
-        } else {
+        if (!source.frame->present()) {
             block.camera_missing = true;
+            continue;
         }
+        if (scene.bands != nullptr) source.shift = ShiftOf(*scene.bands, s, row, col);
+        block.sources.push_back(source);
     }
     return block.sources.size() == 1 && !block.camera_missing && block.sources[0].SeesAll();
 }
 
-void PanoramaRenderer::RenderBlockRow(const ComposedMap& map, const RigFrames& frames,
-                                      NoData no_data, const PanoramaPlanes& out, int row) const {
+void PanoramaRenderer::RenderBlockRow(const Scene& scene, const PanoramaPlanes& out,
+                                      int row) const {
     Block block;
     block.y = row * kBlock;
     block.height = std::min(kBlock, out.height_px - block.y);
-    for (int col = 0; col < map.block_cols(); ++col) {
+    for (int col = 0; col < scene.map.block_cols(); ++col) {
         block.x = col * kBlock;
         block.width = std::min(kBlock, out.width_px - block.x);
-        if (Gather(map, frames, row, col, block)) {
-            block.CopyLuma(out);
-            block.CopyChroma(out);
-        } else {
-            block.BlendLuma(no_data, out);
+        if (!Gather(scene, row, col, block)) {
+            block.BlendLuma(scene.no_data, out);
             block.BlendChroma(out);
+        } else if (block.sources[0].shift.IsNothing()) {
+            block.CopyLuma<false>(out);
+            block.CopyChroma<false>(out);
+        } else {
+            block.CopyLuma<true>(out);
+            block.CopyChroma<true>(out);
         }
     }
 }

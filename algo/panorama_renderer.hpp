@@ -5,6 +5,7 @@
 
 #include "algo/camera_frame.hpp"
 #include "algo/composed_map.hpp"
+#include "algo/multiband_blend.hpp"
 #include "algo/task_runner.hpp"
 
 namespace hitchview::algo {
@@ -27,9 +28,6 @@ enum class NoData {
                ///< missing
 };
 
-/// Brightness of each camera relative to the others; multiplies grey and colour.
-using CameraGains = PerUnit<std::array<float, kMaxCameras>>;
-
 /// Makes the output picture: every pixel is read once, bilinear, straight from the camera frames;
 /// where cameras or units are blended, once from each of them. Bit-identical on any number of
 /// tasks.
@@ -42,6 +40,9 @@ class PanoramaRenderer {
 
     void Render(const ComposedMap& map, const RigFrames& frames, NoData no_data,
                 const PanoramaPlanes& out, TaskRunner& runner) const;
+    /// The same with coarse detail blended wider than fine detail; pattern where there is no data.
+    void RenderBlended(const ComposedMap& map, const RigFrames& frames, const MultibandBlend& bands,
+                       const PanoramaPlanes& out, TaskRunner& runner) const;
 
  private:
     using Lut = std::array<std::uint8_t, 256>;
@@ -49,13 +50,18 @@ class PanoramaRenderer {
         Lut luma;
         Lut chroma;
     };
+    /// What is made into a picture.
+    struct Scene {
+        const ComposedMap& map;
+        const RigFrames& frames;
+        const MultibandBlend* bands;  ///< null: every pixel as the cameras show it
+        NoData no_data;
+    };
     struct BlockSource;
     struct Block;
 
-    void RenderBlockRow(const ComposedMap& map, const RigFrames& frames, NoData no_data,
-                        const PanoramaPlanes& out, int row) const;
-    bool Gather(const ComposedMap& map, const RigFrames& frames, int row, int col,
-                Block& block) const;
+    void RenderBlockRow(const Scene& scene, const PanoramaPlanes& out, int row) const;
+    bool Gather(const Scene& scene, int row, int col, Block& block) const;
 
     PerUnit<std::array<CameraLut, kMaxCameras>> luts_;
 };

@@ -89,10 +89,10 @@ std::optional<Vector3d> UnitGeometry::ViewRay(int camera, const Vector2d& pixel)
     return surface_.RayOf(c.position_m, c.R_camera_unit.transpose() * *direction);
 }
 
-void UnitGeometry::See(const Vector3d& ray, Sights& sights) const {
+void UnitGeometry::See(const Vector3d& ray, const CameraMask& present, Sights& sights) const {
     sights.clear();
     if (!view_.IsRing()) {
-        sights.push_back({0, ray.hnormalized(), 1});
+        sights.push_back({0, ray.hnormalized(), present[0] ? 1.0 : 0.0});
         return;
     }
     const Vector3d p_unit_m = surface_.Hit(ray);
@@ -100,7 +100,8 @@ void UnitGeometry::See(const Vector3d& ray, Sights& sights) const {
     for (int i = 0; i < camera_count_; ++i) {
         CameraSight sight{i, Vector2d::Zero(), 0};
         if (!ProjectPoint(mounted(i), p_unit_m, sight.pixel)) continue;
-        sight.weight = SideMargin(mounted(i).model, sight.pixel);
+        const bool shows = present[static_cast<std::size_t>(i)];
+        sight.weight = shows ? SideMargin(mounted(i).model, sight.pixel) : -1;
         best = std::max(best, sight.weight);
         sights.push_back(sight);
     }

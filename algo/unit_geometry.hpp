@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <bitset>
 #include <optional>
 #include <span>
 
@@ -11,6 +12,9 @@
 namespace hitchview::algo {
 
 inline constexpr std::size_t kMaxCameras = 8;
+
+/// Some of a unit's cameras; bit i is camera i.
+using CameraMask = std::bitset<kMaxCameras>;
 
 /// The surface on which the cameras of a ring are aligned: what lies on it shows no parallax.
 /// A vertical cylinder round the hitch axis, cut off below by the ground.
@@ -59,7 +63,11 @@ class UnitGeometry {
 
     /// Cameras that have a pixel for `ray` of the view, also outside their picture: there their
     /// share is 0 on a ring. The one camera of a plane always has all of it.
-    void See(const Eigen::Vector3d& ray, Sights& sights) const;
+    void See(const Eigen::Vector3d& ray, Sights& sights) const {
+        See(ray, CameraMask().set(), sights);
+    }
+    /// The same where only some cameras give a picture: the others have no share.
+    void See(const Eigen::Vector3d& ray, const CameraMask& present, Sights& sights) const;
 
     /// Pixel of `camera` for a ray of the view, also outside the picture; false if it has none.
     [[nodiscard]] bool Project(int camera, const Eigen::Vector3d& ray,

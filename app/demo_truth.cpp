@@ -83,10 +83,10 @@ void TruthMeter::ObserveSeam(algo::Overlap overlap, int frame, const ShownPanora
                              const Pipeline& pipeline) {
     const algo::ComposedMap& map = pipeline.map();
     constexpr double kBlock = algo::ComposedMap::kBlock;
-    const int col =
-        std::clamp(static_cast<int>(std::lround((map.seam_px()[overlap] + 0.5) / kBlock)), 0,
-                   map.block_cols());
     for (int row = kFirstRow; row < map.block_rows() - kFirstRow; row += kRowStep) {
+        const double seam_px = map.seam_px(overlap, row);
+        const int col = std::clamp(static_cast<int>(std::lround((seam_px + 0.5) / kBlock)), 0,
+                                   map.block_cols());
         const Vector2d canvas_px{col * kBlock - 0.5, row * kBlock - 0.5};
         for (int s = 0; s < map.cameras(); ++s) {
             const algo::ComposedMap::Corner& corner = map.corner(s, row, col);

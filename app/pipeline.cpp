@@ -38,6 +38,8 @@ Pipeline::Pipeline(const RigGeometry& rig, algo::VertexMotion& motion, algo::Tas
       runner_(runner),
       motion_(motion),
       map_(rig_.canvas, rig_.units, algo::SeamOptions{}),
+      gains_(exposure_.gains()),
+      bands_(map_),
       format_(CanvasFormat(rig.canvas)),
       panorama_(hal::FrameBytes(format_)),
       view_(hal::FrameBytes(format_)) {}
@@ -48,7 +50,9 @@ bool Pipeline::Prime(const FrameSet& set) {
 
 void Pipeline::Start() {
     motion_.Reset();
-    gains_.Reset();
+    exposure_.Reset();
+    gains_ = exposure_.gains();
+    renderer_.SetGains(gains_);
     for (FrameSet& set : held_) set = FrameSet{};
     taken_ = shown_ = 0;
 }
@@ -80,18 +84,21 @@ void Pipeline::ReleaseShown() {
 const ShownPanorama* Pipeline::Show(const algo::Composition& composition) {
     const FrameSet& set = held_[shown_ % held_.size()];
     const algo::RigFrames frames = Borrow(set);
+    const algo::RigPictures pictures{frames, gains_};
     {
         const StageTimer timer(times_, Stage::kMap);
-        map_.Build(composition, runner_);
+        map_.Build(composition, pictures, runner_);
     }
     if (shown_ % kGainsEvery == 0) {
         const StageTimer timer(times_, Stage::kGains);
-        gains_.Update(map_, frames);
-        renderer_.SetGains(gains_.gains());
+        exposure_.Update(map_, frames);
+        gains_ = exposure_.gains();
+        renderer_.SetGains(gains_);
     }
     {
         const StageTimer timer(times_, Stage::kRender);
-        renderer_.Render(map_, frames, algo::NoData::kPattern, Planes(panorama_), runner_);
+        bands_.Update(map_, pictures, runner_);
+        renderer_.RenderBlended(map_, frames, bands_, Planes(panorama_), runner_);
     }
     ++shown_;
     result_ = {.picture = {format_,

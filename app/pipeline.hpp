@@ -6,7 +6,9 @@
 
 #include "algo/composed_map.hpp"
 #include "algo/exposure_gains.hpp"
+#include "algo/multiband_blend.hpp"
 #include "algo/panorama_renderer.hpp"
+#include "algo/path_smoother.hpp"
 #include "algo/vertex_motion.hpp"
 #include "app/frame_set.hpp"
 #include "app/rig_geometry.hpp"
@@ -60,7 +62,9 @@ class Pipeline {
     algo::TaskRunner& runner_;
     algo::VertexMotion& motion_;
     algo::ComposedMap map_;
-    algo::ExposureGains gains_;
+    algo::ExposureGains exposure_;
+    algo::CameraGains gains_;
+    algo::MultibandBlend bands_;
     algo::PanoramaRenderer renderer_;
 
     hal::FrameFormat format_;

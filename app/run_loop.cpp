@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "algo/offline_unified_vertex_motion.hpp"
+#include "algo/unified_vertex_motion.hpp"
 #include "app/board.hpp"
 #include "app/frame_synchronizer.hpp"
 #include "app/run_outputs.hpp"

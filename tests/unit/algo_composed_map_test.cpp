@@ -4,6 +4,7 @@
 
 #include "algo/composed_map.hpp"
 #include "algo/unified_vertex_motion.hpp"
+#include "tests/support/nv12_picture.hpp"
 #include "tests/support/small_ring.hpp"
 
 namespace hitchview::algo {
@@ -160,6 +161,102 @@ TEST(ComposedMapTest, OnARingTheTractorLiesBetweenTheTwoSeams) {
     EXPECT_GT(share(Unit::kTractor, 48), 0.99F);
     EXPECT_GT(share(Unit::kTrailer, 4), 0.99F);
     EXPECT_GT(share(Unit::kTrailer, 92), 0.99F);
+}
+
+/// Two plane units that overlap in 100..199 of the canvas, and what they see.
+class PicturedPlanesTest : public testing::Test {
+ protected:
+    PicturedPlanesTest() {
+        for (const Unit unit : kUnits) gains_[unit].fill(1);
+    }
+    void Show(const cv::Mat1b& tractor, const cv::Mat1b& trailer, int times = 1) {
+        const tests::Nv12Picture tractor_picture(tractor);
+        const tests::Nv12Picture trailer_picture(trailer);
+        RigFrames frames;
+        frames[Unit::kTractor][0] = tractor_picture.frame();
+        frames[Unit::kTrailer][0] = trailer_picture.frame();
+        SerialRunner runner;
+        for (int i = 0; i < times; ++i) map_.Build(SideBySide(100), {frames, gains_}, runner);
+    }
+    static cv::Mat1b Plain() { return cv::Mat1b(120, 200, std::uint8_t{100}); }
+    /// The tractor's picture with something at canvas columns from..to that the trailer's lacks.
+    static cv::Mat1b With(int from, int to) {
+        cv::Mat1b picture = Plain();
+        picture.colRange(from, to).rowRange(30, 120).setTo(200);
+        return picture;
+    }
+    [[nodiscard]] double SeamAt(int row) const { return map_.seam_px(Overlap::kRight, row); }
+
+    Rig rig_ = TwoPlanes(200, 120);
+    ComposedMap map_{Projection::Plane(320, 120), rig_, {}};
+    CameraGains gains_;
+};
+
+TEST_F(PicturedPlanesTest, TheSeamGoesRoundWhatTheUnitsShowDifferently) {
+    Show(With(140, 165), Plain());
+    for (int row = 5; row <= map_.block_rows(); ++row) {
+        EXPECT_TRUE(SeamAt(row) < 140 || SeamAt(row) > 165) << row << ": " << SeamAt(row);
+        EXPECT_GT(SeamAt(row), 100);
+        EXPECT_LT(SeamAt(row), 200);
+    }
+    for (int row = 1; row <= map_.block_rows(); ++row)
+        EXPECT_LE(std::abs(SeamAt(row) - SeamAt(row - 1)), ComposedMap::kBlock + 1e-9);
+}
+
+TEST_F(PicturedPlanesTest, WhatComesIntoTheSeamsWayMovesItWithoutAJump) {
+    Show(Plain(), Plain());
+    EXPECT_NEAR(SeamAt(8), 150, 8);
+    const float glide_px = SeamPathOptions{}.glide_px;
+    for (int frame = 0; frame < 40; ++frame) {
+        const double before = SeamAt(8);
+        Show(With(140, 165), Plain());
+        ASSERT_LE(std::abs(SeamAt(8) - before), glide_px + 1e-6) << frame;
+    }
+    EXPECT_TRUE(SeamAt(8) < 140 || SeamAt(8) > 165) << SeamAt(8);
+}
+
+TEST_F(PicturedPlanesTest, EqualPicturesWithDifferentGainsLeaveTheSeamWhereItIs) {
+    gains_[Unit::kTractor][0] = 2;
+    const cv::Mat1b dark(120, 200, std::uint8_t{50});
+    Show(dark, Plain(), 20);
+    EXPECT_NEAR(SeamAt(8), 150, 8);
+}
+
+TEST_F(PicturedPlanesTest, TheTractorsShareCrossesOverAtTheCurve) {
+    Show(With(140, 165), Plain());
+    for (int row = 0; row <= map_.block_rows(); ++row) {
+        for (int col = 0; col <= map_.block_cols(); ++col) {
+            const double beyond = CornerPixel(row, col).x() - SeamAt(row);
+            EXPECT_TRUE(beyond > -9 || map_.corner(0, row, col).weight > 0.99F);
+            EXPECT_TRUE(beyond < 9 || map_.corner(1, row, col).weight > 0.99F);
+        }
+    }
+}
+
+TEST(ComposedMapTest, TheNeighbourTakesOverWhatAMissingCameraOfItsUnitWouldShow) {
+    const Projection canvas = Projection::Cylinder(768, 128, 0.5);
+    Rig rig;
+    rig[Unit::kTractor] = UnitGeometry::Ring(canvas, tests::LevelCameras(3, 1.3, 0), {});
+    ComposedMap map(canvas, rig, {});
+    const tests::Nv12Picture picture(cv::Mat1b(200, 320, std::uint8_t{90}));
+    RigFrames frames;
+    for (const std::size_t i : {0U, 2U}) frames[Unit::kTractor][i] = picture.frame();
+    CameraGains gains;
+    gains[Unit::kTractor].fill(1);
+    SerialRunner runner;
+    map.Build({}, {frames, gains}, runner);
+    int taken_over = 0;
+    int lost = 0;
+    for (int col = 0; col <= map.block_cols(); ++col) {
+        const float neighbours = map.corner(0, 8, col).weight + map.corner(2, 8, col).weight;
+        const float missing = map.corner(1, 8, col).weight;
+        EXPECT_LT(missing, 1e-5F) << "it outweighs nothing";
+        if (missing > 0 && neighbours > 0) ++taken_over;
+        if (missing > 0 && neighbours == 0) ++lost;
+        EXPECT_TRUE(neighbours == 0 || std::abs(neighbours - 1) < 1e-5F) << col;
+    }
+    EXPECT_GT(taken_over, 5);
+    EXPECT_GT(lost, 2) << "what nobody else sees still knows its camera, for the hatch";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "algo/articulation.hpp"
 #include "algo/exposure_gains.hpp"
 #include "algo/feature_tracker.hpp"
+#include "algo/multiband_blend.hpp"
 #include "algo/panorama_renderer.hpp"
 #include "algo/paper_weights_smoother.hpp"
 #include "algo/path_smoother.hpp"
@@ -147,20 +148,23 @@ TEST_F(HeapTest, ComposingAndRenderingTakeNoMemory) {
         frames[unit][0] = picture.frame();
     }
     Composition composition;
-    composition.M_canvas_view[Unit::kTrailer](0, 2) = 200;
+    composition.M_canvas_view[Unit::kTrailer](0, 2) = 200;  // overlaps by 120
     SemiSurroundView view(*rig[Unit::kTractor], 0.5);
     cv::Mat1b grey(view.height_px(), view.width_px());
     ComposedMap map(Projection::Plane(520, 200), rig, {});
     ExposureGains gains;
+    MultibandBlend bands(map);
     PanoramaRenderer renderer;
     tests::PanoramaPicture panorama({520, 200});
     SerialRunner runner;
     EXPECT_EQ(HeapCallsOf([&] { view.Compose(frames[Unit::kTractor], grey); }), 0U);
     EXPECT_EQ(HeapCallsOf([&] {
-                  map.Build(composition, runner);
+                  const CameraGains known = gains.gains();
+                  map.Build(composition, {frames, known}, runner);
                   gains.Update(map, frames);
                   renderer.SetGains(gains.gains());
-                  renderer.Render(map, frames, NoData::kPattern, panorama.planes(), runner);
+                  bands.Update(map, {frames, known}, runner);
+                  renderer.RenderBlended(map, frames, bands, panorama.planes(), runner);
               }),
               0U);
 }
