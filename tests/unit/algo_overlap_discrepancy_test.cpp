@@ -11,7 +11,7 @@ const Projection kPlane = Projection::Plane(640, 360);
 const Projection kRing = Projection::Cylinder(1024, 180, 0.5);
 MeasuredDiscrepancy Measure(const Projection& canvas, const CanvasPairs& pairs,
                             double kappa = 0.5) {
-    StitchingMotionFieldOptions options;
+    OverlapDiscrepancyOptions options;
     options.kappa = kappa;
     options.propagation = {.radius_px = {50, 60}, .min_votes = 3, .shrink_votes = 3};
     MeasuredDiscrepancy measured;
@@ -97,7 +97,7 @@ TEST(OverlapDiscrepancyTest, AnObliquePlaneIsFollowedToTheRimOfTheOverlap) {
 }
 
 TEST(OverlapDiscrepancyTest, ASecondOverlapIsAddedToTheFirst) {
-    StitchingMotionFieldOptions options;
+    OverlapDiscrepancyOptions options;
     options.propagation = {.radius_px = {50, 60}, .min_votes = 3, .shrink_votes = 3};
     OverlapDiscrepancy sut(kRing, options);
     MeasuredDiscrepancy measured;
