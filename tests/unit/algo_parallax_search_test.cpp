@@ -37,7 +37,8 @@ TEST(ParallaxSearchTest, AShiftFarBeyondThePatchIsFoundOnEitherSide) {
 
 TEST(ParallaxSearchTest, BrightnessAndContrastMayDiffer) {
     const cv::Mat1b from = Noise(200, 60, 2);
-    const cv::Mat1b to = Shifted(from, 17) * 0.6 + 30;
+    cv::Mat1b to;
+    Shifted(from, 17).convertTo(to, CV_8U, 0.6, 30);
     const auto found = SearchAlongRow(from, to, {90, 30}, {90, 30}, {90, 30}, {0, 40});
     ASSERT_TRUE(found);
     EXPECT_EQ(found->x(), 107);
