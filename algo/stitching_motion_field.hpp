@@ -22,9 +22,9 @@ struct StitchingMotionFieldOptions {
 
 /// Stitching motion field (paper, same section), with the discrepancy e = trailer - tractor that is
 /// left on the canvas after the rigid placement. Live form: one robust fit to the pairs of all
-/// overlaps and to the field of the frame before, carried along with the scene (facts 4.6). Defined
-/// at the vertices of the canvas, at the point where both views meet: tractor pixels are read at
-/// c - kappa e(c), trailer pixels at c + (1 - kappa) e(c).
+/// overlaps and to the field of the frame before, carried along with the scene (docs/algorithm.md,
+/// section 8). Defined at the vertices of the canvas, at the point where both views meet: tractor
+/// pixels are read at c - kappa e(c), trailer pixels at c + (1 - kappa) e(c).
 class StitchingMotionField {
  public:
     StitchingMotionField(const Projection& canvas, const StitchingMotionFieldOptions& options);

@@ -22,9 +22,10 @@ struct TrailerPlacementOptions {
     int coast_frames = 60;  ///< without matches before the overlap is searched from nothing
 };
 
-/// Where the trailer's view lies on the tractor's (facts 4.6, 4.7): the pose of rays, tractor from
-/// trailer, of the raw views at each moment. Predicted by the intra motions of both units, which
-/// carry the fast part exactly, and corrected by inter features with a gain. From images alone.
+/// Where the trailer's view lies on the tractor's (docs/algorithm.md, section 7): the pose of rays,
+/// tractor from trailer, of the raw views at each moment. Predicted by the intra motions of both
+/// units, which carry the fast part exactly, and corrected by inter features with a gain. From
+/// images alone.
 class TrailerPlacement {
  public:
     TrailerPlacement(const Projection& tractor_view, const Projection& trailer_view,

@@ -13,8 +13,8 @@
 
 namespace hitchview::algo {
 
-/// Unified vertex motion in its live form (facts 4.6): causal, fixed memory, one step per frame
-/// set. A rig has a tractor and perhaps a trailer.
+/// Unified vertex motion in its live form (docs/algorithm.md, section 5): causal, fixed memory, one
+/// step per frame set. A rig has a tractor and perhaps a trailer.
 class UnifiedVertexMotion final : public VertexMotion {
  public:
     /// `geometry[kTrailer]` may be empty. The canvas and both views have the same projection.
