@@ -52,6 +52,14 @@ SemiSurroundView::SemiSurroundView(const UnitGeometry& geometry, double scale)
     mask_ = calibrated_mask_.clone();
 }
 
+std::optional<int> SemiSurroundView::CameraAt(const Eigen::Vector2f& analysis) const {
+    const auto x = static_cast<int>(std::lround(analysis.x()));
+    const auto y = static_cast<int>(std::lround(analysis.y()));
+    const bool inside = x >= 0 && y >= 0 && x < camera_.cols && y < camera_.rows;
+    if (!inside || camera_(y, x) == kNoCamera) return std::nullopt;
+    return camera_(y, x);
+}
+
 void SemiSurroundView::BuildMap() {
     UnitGeometry::Sights sights;
     for (int y = 0; y < camera_.rows; ++y) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <vector>
 
 #include "algo/camera_frame.hpp"
@@ -34,6 +35,8 @@ class SemiSurroundView {
         return (((view.array() + 0.5) * scale_) - 0.5).cast<float>();
     }
     [[nodiscard]] double scale() const { return scale_; }
+    /// Camera that the pixel nearest to `analysis` is taken from; empty where there is none.
+    [[nodiscard]] std::optional<int> CameraAt(const Eigen::Vector2f& analysis) const;
 
  private:
     static constexpr std::uint8_t kNoCamera = 255;

@@ -12,10 +12,13 @@ StabilizationMotionField::StabilizationMotionField(const Projection& view,
       mesh_(view),
       options_(options),
       similarity_(options.robust),
-      rotation_(options.robust) {}
+      rotation_(options.robust),
+      turn_(options.turn) {}
 
-void StabilizationMotionField::Estimate(const FeatureMotions& intra_features, IntraMotion& motion) {
+void StabilizationMotionField::Estimate(const FeatureMotions& intra_features,
+                                        std::span<const SightMotion> sights, IntraMotion& motion) {
     FitGlobal(intra_features, motion);
+    if (motion.known && !sights.empty()) RefineTurn(sights, motion);
     motion.residual.setZero();
     if (motion.known) SpreadResiduals(intra_features, motion);
 }
@@ -34,6 +37,14 @@ void StabilizationMotionField::FitGlobal(const FeatureMotions& intra_features,
     motion.known = fit && fit->inliers >= options_.min_inliers;
     motion.inliers = fit ? fit->inliers : 0;
     motion.M_late_early = motion.known ? fit->model : Eigen::Matrix3d::Identity();
+}
+
+void StabilizationMotionField::RefineTurn(std::span<const SightMotion> sights,
+                                          IntraMotion& motion) {
+    const std::optional<Turn> turn = turn_.Fit(sights, motion.M_late_early);
+    motion.known = turn && turn->inliers >= options_.min_inliers;
+    motion.inliers = turn ? turn->inliers : 0;
+    motion.M_late_early = motion.known ? turn->R_late_early : Eigen::Matrix3d::Identity();
 }
 
 void StabilizationMotionField::SpreadResiduals(const FeatureMotions& intra_features,

@@ -4,6 +4,7 @@
 #include "algo/magsac.hpp"
 #include "algo/mesh.hpp"
 #include "algo/projection.hpp"
+#include "algo/turn_fit.hpp"
 #include "algo/vertex_propagation.hpp"
 
 namespace hitchview::algo {
@@ -23,6 +24,7 @@ struct StabilizationMotionFieldOptions {
     int min_inliers = 12;
     double max_residual_px = 3;  ///< farther off is another motion, not a local one
     PropagationOptions propagation{};
+    TurnFitOptions turn{};  ///< of a ring; px as those of the view
 };
 
 /// Stabilization motion field of one unit (paper, same section): feature motions into global motion
@@ -34,10 +36,15 @@ class StabilizationMotionField {
     StabilizationMotionField(const Projection& view,
                              const StabilizationMotionFieldOptions& options);
 
-    void Estimate(const FeatureMotions& intra_features, IntraMotion& motion);
+    /// `sights`: on a ring, the features as their cameras see them. They refine the global motion
+    /// to what the unit turned by; without them it is the rotation that most features agree with.
+    void Estimate(const FeatureMotions& intra_features, std::span<const SightMotion> sights,
+                  IntraMotion& motion);
+    void Reset() { turn_.Reset(); }
 
  private:
     void FitGlobal(const FeatureMotions& intra_features, IntraMotion& motion);
+    void RefineTurn(std::span<const SightMotion> sights, IntraMotion& motion);
     void SpreadResiduals(const FeatureMotions& intra_features, IntraMotion& motion);
 
     Projection view_;
@@ -45,6 +52,7 @@ class StabilizationMotionField {
     StabilizationMotionFieldOptions options_;
     MagsacEstimator<SimilarityModel, kMaxFeatures> similarity_;
     MagsacEstimator<RotationModel, kMaxFeatures> rotation_;
+    TurnFit turn_;
     FixedVector<RayPair, kMaxFeatures> pairs_;
     FixedVector<PointMotion, kMaxFeatures> residuals_;
 };

@@ -56,6 +56,9 @@ UnitAnalysisOptions AnalysisOptions(const Projection& view) {
                                  .min_votes = 4,
                                  .shrink_votes = 6};
     if (view.IsRing()) options.field.propagation.radius_px.x() = 0.06 * view.width_px;
+    options.field.turn.px_per_rad = view.focal_px;
+    options.field.turn.first_spread_px = 4 / options.scale;
+    options.field.turn.spread_px = 0.3 / options.scale;
     return options;
 }
 

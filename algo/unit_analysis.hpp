@@ -33,6 +33,9 @@ class UnitAnalysis {
     [[nodiscard]] int features() const { return static_cast<int>(intra_features_.size()); }
 
  private:
+    void FindSights();
+
+    const UnitGeometry* geometry_;
     SemiSurroundView view_;
     GreyPyramid early_;
     GreyPyramid late_;
@@ -40,6 +43,7 @@ class UnitAnalysis {
     StabilizationMotionField field_;
     FeatureTracker::Tracks tracks_;
     FeatureMotions intra_features_;
+    FixedVector<SightMotion, kMaxFeatures> sights_;
 };
 
 }  // namespace hitchview::algo

@@ -121,9 +121,13 @@ std::optional<SightLine> UnitGeometry::SightAlong(const Vector3d& ray) const {
         sights.begin(), sights.end(),
         [](const CameraSight& a, const CameraSight& b) { return a.weight < b.weight; });
     if (best == sights.end() || best->weight <= 0) return std::nullopt;
+    return SightOf(best->camera, ray);
+}
+
+SightLine UnitGeometry::SightOf(int camera, const Vector3d& ray) const {
     // The view shows a point of the surface where the camera sees it: the lens cancels out.
-    const Vector3d& origin_m = mounted(best->camera).position_m;
-    return SightLine{origin_m, (surface_.Hit(ray) - origin_m).normalized()};
+    const Vector3d& origin_m = mounted(camera).position_m;
+    return {origin_m, (surface_.Hit(ray) - origin_m).normalized()};
 }
 
 }  // namespace hitchview::algo

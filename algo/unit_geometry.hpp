@@ -81,6 +81,8 @@ class UnitGeometry {
     /// How the camera with the largest share in `ray` of a ring's view sees what is shown there.
     /// Empty where no camera has a share.
     [[nodiscard]] std::optional<SightLine> SightAlong(const Eigen::Vector3d& ray) const;
+    /// How `camera` sees what is shown along `ray` of a ring's view.
+    [[nodiscard]] SightLine SightOf(int camera, const Eigen::Vector3d& ray) const;
 
  private:
     struct MountedCamera {

@@ -35,7 +35,7 @@ FeatureMotions Motions(const Projection& view, const Matrix3d& pose, double outl
 
 class EveryViewTest : public testing::TestWithParam<Projection> {
  protected:
-    void Estimate(const FeatureMotions& motions) { estimator_->Estimate(motions, motion_); }
+    void Estimate(const FeatureMotions& motions) { estimator_->Estimate(motions, {}, motion_); }
     double ErrorAt(const Matrix3d& truth, const Vector2d& at) const {
         const Vector3d ray = view_.Ray(at);
         return view_.Difference(view_.Pixel(motion_.M_late_early * ray), view_.Pixel(truth * ray))
