@@ -64,7 +64,7 @@ TEST_F(HeapTest, MotionEstimationTakesNoMemory) {
         std::make_unique<TrailerPlacement>(plane_, plane_, TrailerPlacementOptions{});
     PathSmoother smoother({.lookahead_frames = 3});
     IntraMotion motion;
-    EXPECT_EQ(HeapCallsOf([&] { field->Estimate(motions, motion); }), 0U);
+    EXPECT_EQ(HeapCallsOf([&] { field->Estimate(motions, {}, motion); }), 0U);
     EXPECT_TRUE(motion.known);
     EXPECT_EQ(HeapCallsOf([&] {
                   stitching->Update(canvas_pairs);
@@ -90,7 +90,7 @@ TEST_F(HeapTest, RingEstimationTakesNoMemory) {
     const auto field =
         std::make_unique<StabilizationMotionField>(ring, StabilizationMotionFieldOptions{});
     IntraMotion motion;
-    EXPECT_EQ(HeapCallsOf([&] { field->Estimate(motions, motion); }), 0U);
+    EXPECT_EQ(HeapCallsOf([&] { field->Estimate(motions, {}, motion); }), 0U);
 }
 
 TEST_F(HeapTest, ArticulationTakesNoMemory) {
