@@ -26,6 +26,9 @@ algo::UnifiedVertexMotionOptions MotionOptions(const RigConfig& config, const Ru
                         ? algo::Border::kCovered
                         : algo::Border::kFree;
     motion.cropping = config.stabilization.cropping;
+    motion.smoother = config.stabilization.smoother == StabilizationConfig::Smoother::kPaperWeights
+                          ? algo::Smoother::kPaperWeights
+                          : algo::Smoother::kRecedingHorizon;
     motion.kappa = config.stitching.kappa;
     if (config.placement) {
         for (const algo::Unit unit : algo::kUnits) {
