@@ -1,6 +1,7 @@
 #include "algo/offline_unified_vertex_motion.hpp"
 
 #include "algo/field_extension.hpp"
+#include "algo/fold_guard.hpp"
 #include "algo/overlap_discrepancy.hpp"
 #include "algo/warp_factor.hpp"
 
@@ -136,6 +137,7 @@ void OfflineUnifiedVertexMotion::Warp(Unit unit, const Profiles& warp) {
         const FactoredWarp factored = FactorWarp(view(unit), ToField(warp, i));
         c.M_canvas_view[unit] = c.M_canvas_view[unit] * factored.pose;
         c.view_offset[unit] = factored.rest;
+        GuardFolds(Mesh(view(unit)), kMaxStretch, c.view_offset[unit]);
         c.stabilization[unit] = ToOffset(view(unit), factored.pose);
     }
 }
@@ -201,8 +203,9 @@ void OfflineUnifiedVertexMotion::Stitch() {
     }
     const Mesh mesh(canvas_);
     for (std::size_t i = 0; i < compositions_.size(); ++i) {
-        compositions_[i].discrepancy =
-            ExtendField(mesh, ToField(discrepancy, i), ToField(confidence, i).row(0));
+        VertexField& field = compositions_[i].discrepancy;
+        field = ExtendField(mesh, ToField(discrepancy, i), ToField(confidence, i).row(0));
+        GuardFolds(mesh, kMaxStretch, field);
     }
 }
 
