@@ -118,6 +118,7 @@ void OfflineUnifiedVertexMotion::Describe() {
         c.seams = learnt_[i].seams;
         c.matches = learnt_[i].matches;
         c.features = learnt_[i].features;
+        c.articulation = learnt_[i].articulation;
     }
 }
 
