@@ -171,11 +171,14 @@ CanvasPairs OfflineUnifiedVertexMotion::PairsOnCanvas(std::size_t frame, Overlap
         return ToCanvas(canvas_, view(unit), compositions_[frame], unit, view(unit).Ray(view_px));
     };
     CanvasPairs pairs;
-    for (const InterFeature& f : learnt_[frame].inter[overlap]) {
-        const CanvasPair pair{on_canvas(Unit::kTractor, f.tractor_px),
-                              on_canvas(Unit::kTrailer, f.trailer_px)};
-        if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < MaxParallax_px(canvas_))
-            pairs.push_back(pair);
+    const RigMotion& motion = learnt_[frame];
+    for (const InterFeatures* features : {&motion.inter[overlap], &motion.dense[overlap]}) {
+        for (const InterFeature& f : *features) {
+            const CanvasPair pair{on_canvas(Unit::kTractor, f.tractor_px),
+                                  on_canvas(Unit::kTrailer, f.trailer_px)};
+            const Vector2d apart = canvas_.Difference(pair.tractor_px, pair.trailer_px);
+            if (apart.norm() < MaxParallax_px(canvas_)) pairs.push_back(pair);
+        }
     }
     return pairs;
 }
