@@ -67,7 +67,7 @@ struct SimulationConfig {
 struct StabilizationConfig {
     enum class Border {
         kFree,     ///< uncovered pixels show 'no data'
-        kCovered,  ///< zoomed by 1 / cropping, never uncovered
+        kCovered,  ///< zoomed by 1 / cropping, or more, until the canvas is filled
     };
     enum class Smoother {
         kRecedingHorizon,  ///< plans ahead, knows its walls

@@ -231,6 +231,24 @@ TEST(PlaneRunTest, TheRigFileChoosesTheSmoother) {
     EXPECT_LT((paper[1] - paper[0] - 0.7946 * motion).norm(), 0.05);
 }
 
+TEST(PlaneRunTest, WithACoveredBorderTwoShakingUnitsFillTheCanvas) {
+    const PlaneRigFiles rig(3);
+    const auto kept = RunAndKeep(rig.Rig("stabilization: {border: covered, cropping: 0.9}\n"));
+    ASSERT_EQ(kept.size(), PlaneRigFiles::kFrames);
+    for (const KeptPanorama& shown : kept) {
+        const auto is_covered = [&](int x, int y) {
+            return Inside(ViewPixel(shown, Unit::kTractor, x, y)) ||
+                   Inside(ViewPixel(shown, Unit::kTrailer, x, y));
+        };
+        for (int x = 0; x < kCanvas.width; ++x) {
+            EXPECT_TRUE(is_covered(x, 0) && is_covered(x, kCanvas.height - 1)) << x;
+        }
+        for (int y = 0; y < kCanvas.height; ++y) {
+            EXPECT_TRUE(is_covered(0, y) && is_covered(kCanvas.width - 1, y)) << y;
+        }
+    }
+}
+
 TEST(PlaneRunTest, TheShortestRecordingEndsTheRun) {
     const PlaneRigFiles rig(0);
     std::filesystem::remove(rig.folder() / "trailer/15.png");
