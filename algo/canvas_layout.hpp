@@ -17,7 +17,9 @@ struct CanvasLayout {
 
 /// A ring lies in the tractor's frame. On a plane, views that were matched are centred with their
 /// joint bounding box; views that were not lie flush left and flush right; `options.placement`
-/// overrides both, and `options.border` kCovered zooms in by 1 / cropping about the middle.
+/// overrides both. `options.border` kCovered zooms in by 1 / cropping or more, until views side by
+/// side fill the canvas wherever their margins let them move; a trailer that swings may still leave
+/// its outer edge in the picture.
 /// `M_tractor_trailer`: the trailer's view on the tractor's, null while it is not known.
 CanvasLayout LayOutCanvas(const Projection& canvas, const Projection& tractor,
                           const std::optional<Projection>& trailer,

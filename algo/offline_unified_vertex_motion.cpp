@@ -1,6 +1,7 @@
 #include "algo/offline_unified_vertex_motion.hpp"
 
 #include "algo/field_extension.hpp"
+#include "algo/fold_guard.hpp"
 #include "algo/overlap_discrepancy.hpp"
 #include "algo/warp_factor.hpp"
 
@@ -117,6 +118,7 @@ void OfflineUnifiedVertexMotion::Describe() {
         c.seams = learnt_[i].seams;
         c.matches = learnt_[i].matches;
         c.features = learnt_[i].features;
+        c.articulation = learnt_[i].articulation;
     }
 }
 
@@ -136,6 +138,7 @@ void OfflineUnifiedVertexMotion::Warp(Unit unit, const Profiles& warp) {
         const FactoredWarp factored = FactorWarp(view(unit), ToField(warp, i));
         c.M_canvas_view[unit] = c.M_canvas_view[unit] * factored.pose;
         c.view_offset[unit] = factored.rest;
+        GuardFolds(Mesh(view(unit)), kMaxStretch, c.view_offset[unit]);
         c.stabilization[unit] = ToOffset(view(unit), factored.pose);
     }
 }
@@ -168,11 +171,14 @@ CanvasPairs OfflineUnifiedVertexMotion::PairsOnCanvas(std::size_t frame, Overlap
         return ToCanvas(canvas_, view(unit), compositions_[frame], unit, view(unit).Ray(view_px));
     };
     CanvasPairs pairs;
-    for (const InterFeature& f : learnt_[frame].inter[overlap]) {
-        const CanvasPair pair{on_canvas(Unit::kTractor, f.tractor_px),
-                              on_canvas(Unit::kTrailer, f.trailer_px)};
-        if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < MaxParallax_px(canvas_))
-            pairs.push_back(pair);
+    const RigMotion& motion = learnt_[frame];
+    for (const InterFeatures* features : {&motion.inter[overlap], &motion.dense[overlap]}) {
+        for (const InterFeature& f : *features) {
+            const CanvasPair pair{on_canvas(Unit::kTractor, f.tractor_px),
+                                  on_canvas(Unit::kTrailer, f.trailer_px)};
+            const Vector2d apart = canvas_.Difference(pair.tractor_px, pair.trailer_px);
+            if (apart.norm() < MaxParallax_px(canvas_)) pairs.push_back(pair);
+        }
     }
     return pairs;
 }
@@ -201,8 +207,9 @@ void OfflineUnifiedVertexMotion::Stitch() {
     }
     const Mesh mesh(canvas_);
     for (std::size_t i = 0; i < compositions_.size(); ++i) {
-        compositions_[i].discrepancy =
-            ExtendField(mesh, ToField(discrepancy, i), ToField(confidence, i).row(0));
+        VertexField& field = compositions_[i].discrepancy;
+        field = ExtendField(mesh, ToField(discrepancy, i), ToField(confidence, i).row(0));
+        GuardFolds(mesh, kMaxStretch, field);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include "algo/field_fit.hpp"
 #include "algo/fixed_vector.hpp"
+#include "algo/fold_guard.hpp"
 
 namespace hitchview::algo {
 
@@ -16,8 +17,8 @@ using CanvasPairs = FixedVector<CanvasPair, kMaxCanvasPairs>;
 struct StitchingMotionFieldOptions {
     double kappa = 0.5;  ///< who moves: 0 the trailer alone, 1 the tractor alone
     FieldFitOptions fit{};
-    double forgetting = 0.8;   ///< share of a vertex's confidence that stays, per frame
-    double max_stretch = 0.4;  ///< fold guard: largest change of the field per cell, in cells
+    double forgetting = 0.8;           ///< share of a vertex's confidence that stays, per frame
+    double max_stretch = kMaxStretch;  ///< of the fold guard
 };
 
 /// Stitching motion field (paper, same section), with the discrepancy e = trailer - tractor that is
@@ -49,10 +50,6 @@ class StitchingMotionField {
     }
 
  private:
-    void GuardFolds();
-    bool Ease();
-    bool EaseEdge(int a, int b, float cell_px);
-
     Projection canvas_;
     Mesh mesh_;
     StitchingMotionFieldOptions options_;

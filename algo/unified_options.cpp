@@ -96,6 +96,14 @@ PathSmootherOptions StabilizerOptions(const Projection& canvas, const Projection
     return smoother;
 }
 
+UnitSmoother MakeUnitSmoother(const Projection& canvas, const Projection& view,
+                              const UnifiedVertexMotionOptions& options) {
+    const PathSmootherOptions smoother = StabilizerOptions(canvas, view, options);
+    if (options.smoother == Smoother::kPaperWeights)
+        return UnitSmoother(WalledPaperWeights(smoother));
+    return UnitSmoother(PathSmoother(smoother));
+}
+
 PathSmootherOptions HitchSmootherOptions(const Projection& view) {
     PathSmootherOptions smoother;
     smoother.guess_damping = 0.85;

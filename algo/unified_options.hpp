@@ -8,10 +8,13 @@
 #include "algo/stitching_motion_field.hpp"
 #include "algo/trailer_placement.hpp"
 #include "algo/unit_analysis.hpp"
+#include "algo/unit_smoother.hpp"
 
 namespace hitchview::algo {
 
 enum class Border { kFree, kCovered };
+/// PathSmoother or the paper's weights, WalledPaperWeights.
+enum class Smoother { kRecedingHorizon, kPaperWeights };
 
 struct UnifiedVertexMotionOptions {
     bool stabilize = true;
@@ -19,7 +22,8 @@ struct UnifiedVertexMotionOptions {
     int lookahead_frames = 0;       ///< 0..kMaxLookahead
     Border border = Border::kFree;  ///< kFree: uncovered pixels are no data; kCovered: zoomed in
     double cropping = 0.90;         ///< kCovered: share of the view's width that stays visible
-    double kappa = 0.5;             ///< who moves in an overlap: 0 the trailer, 1 the tractor
+    Smoother smoother = Smoother::kRecedingHorizon;  ///< of each unit's own path
+    double kappa = 0.5;  ///< who moves in an overlap: 0 the trailer, 1 the tractor
     /// Plane: top-left pixel of each unit on the canvas, instead of matching.
     PerUnit<std::optional<Eigen::Vector2d>> placement;
 };
@@ -36,6 +40,8 @@ TrailerPlacementOptions PlacementOptions(const Projection& canvas, double analys
 /// Of one unit's own path.
 PathSmootherOptions StabilizerOptions(const Projection& canvas, const Projection& view,
                                       const UnifiedVertexMotionOptions& options);
+UnitSmoother MakeUnitSmoother(const Projection& canvas, const Projection& view,
+                              const UnifiedVertexMotionOptions& options);
 /// Of the trailer's placement on the canvas.
 PathSmootherOptions HitchSmootherOptions(const Projection& view);
 

@@ -34,7 +34,7 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
     for (const Unit unit : kUnits) {
         if (!geometry[unit]) continue;
         smoother_[unit] =
-            std::make_unique<PathSmoother>(StabilizerOptions(canvas, view(unit), options));
+            std::make_unique<UnitSmoother>(MakeUnitSmoother(canvas, view(unit), options));
     }
     if (has_trailer()) {
         hitch_smoother_ = std::make_unique<PathSmoother>(HitchSmootherOptions(tractor_view_));

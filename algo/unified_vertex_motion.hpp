@@ -66,7 +66,7 @@ class UnifiedVertexMotion final : public VertexMotion {
     MatchGuess guess_;
     double max_parallax_px_;
     StitchingMotionField stitching_;
-    PerUnit<std::unique_ptr<PathSmoother>> smoother_;
+    PerUnit<std::unique_ptr<UnitSmoother>> smoother_;
     std::unique_ptr<PathSmoother> hitch_smoother_;
 
     CanvasLayout layout_;

@@ -67,13 +67,18 @@ struct SimulationConfig {
 struct StabilizationConfig {
     enum class Border {
         kFree,     ///< uncovered pixels show 'no data'
-        kCovered,  ///< zoomed by 1 / cropping, never uncovered
+        kCovered,  ///< zoomed by 1 / cropping, or more, until the canvas is filled
+    };
+    enum class Smoother {
+        kRecedingHorizon,  ///< plans ahead, knows its walls
+        kPaperWeights,     ///< the paper's weights made causal, for comparison
     };
 
     bool enabled = true;
     int lookahead_frames = 0;  ///< frames seen before one is shown; each costs a period. [0, 10]
     Border border = Border::kFree;
     double cropping = 0.90;  ///< share of width and height that stays in view. [0.5, 1]
+    Smoother smoother = Smoother::kRecedingHorizon;
 };
 
 struct StitchingConfig {

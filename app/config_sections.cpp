@@ -20,6 +20,11 @@ constexpr std::array kProfiles{
 constexpr std::array kBorders{
     Choice<StabilizationConfig::Border>{"free", StabilizationConfig::Border::kFree},
     Choice<StabilizationConfig::Border>{"covered", StabilizationConfig::Border::kCovered}};
+constexpr std::array kSmoothers{
+    Choice<StabilizationConfig::Smoother>{"receding_horizon",
+                                          StabilizationConfig::Smoother::kRecedingHorizon},
+    Choice<StabilizationConfig::Smoother>{"paper_weights",
+                                          StabilizationConfig::Smoother::kPaperWeights}};
 constexpr std::array kByteOrders{
     Choice<HitchAngleSignal::ByteOrder>{"motorola", HitchAngleSignal::ByteOrder::kMotorola},
     Choice<HitchAngleSignal::ByteOrder>{"intel", HitchAngleSignal::ByteOrder::kIntel}};
@@ -132,6 +137,7 @@ StabilizationConfig ReadStabilization(const YamlValue& value) {
                                  stabilization.lookahead_frames);
     map["border"].Read(kBorders, stabilization.border);
     map["cropping"].Read({0.5, 1}, stabilization.cropping);
+    map["smoother"].Read(kSmoothers, stabilization.smoother);
     map.Finish();
     return stabilization;
 }

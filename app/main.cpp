@@ -42,9 +42,13 @@ void AddScenariosOptions(CLI::App& verb, ScenariosOptions& options) {
     verb.add_option("name", options.names, "scenarios to drive; all unless given");
     verb.add_option("--frames", options.run.frames, "stop each after so many frame sets")
         ->check(CLI::Range(1, 36000));
-    verb.add_option("--lookahead", options.run.lookahead_frames,
-                    "frames seen before one is shown: steadier, later by a period each")
-        ->check(CLI::Range(0, kMaxLookaheadFrames));
+    verb.add_option("--lookahead", options.lookaheads,
+                    "frames seen before one is shown; of several (0,3,5) each is driven")
+        ->delimiter(',')
+        ->check(CLI::Range(0, kMaxLookaheadFrames))
+        ->capture_default_str();
+    verb.add_flag("--offline", options.offline,
+                  "drive once more in the paper's form, which sees all frames before it shows one");
     verb.add_option("--camera-width", options.camera_width_px, "width of the cameras, 16:9")
         ->check(CLI::IsMember({320, 640, 960, 1280, 1920}))
         ->capture_default_str();
@@ -131,7 +135,7 @@ int main(int argc, char** argv) {
     CLI::App& scenarios_verb = *app.add_subcommand(
         "scenarios",
         "Drive the simulated vehicle through many situations and measure against the truth.\n"
-        "Example: hitchview scenarios slalom --frames 300 --json out/slalom.json");
+        "Example: hitchview scenarios slalom --lookahead 0,3,5 --offline --cache out/cache");
     AddScenariosOptions(scenarios_verb, scenarios);
 
     app.add_subcommand("view", "Show the published panorama: hitchview view --help");

@@ -50,6 +50,13 @@ nlohmann::json MeasureQuality(const RigConfig& config, const std::filesystem::pa
     return quality;
 }
 
+/// Two passes over a recording may take minutes before anything else is seen.
+void ShowProgress(const char* step, std::uint64_t frames) {
+    constexpr std::uint64_t kEvery = 10;
+    if (frames % kEvery != 0) return;
+    std::fprintf(stderr, "\r%s %llu frame sets", step, static_cast<unsigned long long>(frames));
+}
+
 /// Why the options contradict each other; empty if they do not.
 std::string Contradiction(const ReplayOptions& options) {
     if (options.run.offline && options.run.realtime)
@@ -74,7 +81,9 @@ int ReplayVerb(const ReplayOptions& options, const std::atomic<bool>& stop) {
         return Fail(kWrongUse, "--out is needed to write videos or to measure them");
     }
 
+    if (run.offline) run.progress = ShowProgress;
     const auto summary = RunRig(config.value(), run, stop);
+    if (run.offline) std::fputc('\n', stderr);
     if (!summary) return Fail(kMachineFailed, summary.error());
     std::fputs(Table(summary.value()).c_str(), stdout);
     if (run.out.empty()) return 0;

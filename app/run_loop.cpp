@@ -26,6 +26,9 @@ algo::UnifiedVertexMotionOptions MotionOptions(const RigConfig& config, const Ru
                         ? algo::Border::kCovered
                         : algo::Border::kFree;
     motion.cropping = config.stabilization.cropping;
+    motion.smoother = config.stabilization.smoother == StabilizationConfig::Smoother::kPaperWeights
+                          ? algo::Smoother::kPaperWeights
+                          : algo::Smoother::kRecedingHorizon;
     motion.kappa = config.stitching.kappa;
     if (config.placement) {
         for (const algo::Unit unit : algo::kUnits) {
@@ -100,6 +103,7 @@ hal::Checked<hal::Done> Learn(Board& board, algo::OfflineUnifiedVertexMotion& mo
         if (!set && set.error() == hal::Error::kEndOfStream) break;
         if (!set) return CameraFailure(set.error());
         motion.Learn(Borrow(set.value()), workers);
+        if (options.progress) options.progress("learnt", taken + 1);
     }
     motion.Solve();
     return hal::Done{};
@@ -179,6 +183,7 @@ class Run {
                 ++summary_.locked_frames[overlap];
         }
         if (const auto& known = shown.composition->articulation) summary_.articulation.Add(*known);
+        if (options_.offline && options_.progress) options_.progress("shown", summary_.frames);
         const auto done = outputs_.Show(shown, pipeline_, summary_);
         if (done && hook) hook(shown, pipeline_);
         return done;

@@ -12,6 +12,9 @@
 
 namespace hitchview::app {
 
+/// What long work has done so far: a step and its frame sets.
+using ProgressHook = std::function<void(const char* step, std::uint64_t frames)>;
+
 struct RunOptions {
     std::filesystem::path out{};  ///< folder for report and videos; empty: none are written
     std::optional<int> frames{};  ///< at most so many frame sets
@@ -20,6 +23,7 @@ struct RunOptions {
     bool offline =
         false;  ///< recordings are read twice, and all of them is seen before any is shown
     algo::Coupling coupling = algo::Coupling::kCorrected;  ///< offline
+    ProgressHook progress{};                               ///< offline
     bool realtime = false;     ///< not offline; one frame set per period; late ones are dropped
     bool write_video = false;  ///< out/panorama.avi
     bool write_views = false;  ///< out/tractor.avi, out/trailer.avi

@@ -27,6 +27,8 @@ class ScenarioFrames {
     /// The set of a frame of the newest batch that was not taken yet, or of the next one.
     const FrameSet& Peek(int frame);
     FrameSet Take(int frame);
+    /// The next frame is the first one again, and all can be taken once more.
+    void Rewind() { batch_.clear(); }
 
  private:
     /// All frames of one camera: its pictures of a batch are rendered one after another.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "algo/offline_unified_vertex_motion.hpp"
 #include "algo/unified_vertex_motion.hpp"
 #include "app/scenario_frames.hpp"
 #include "app/scenario_meter.hpp"
@@ -35,9 +36,14 @@ hal::Checked<RigGeometry> GeometryOf(const SimulatedRig& rig, int canvas_width_p
     return MakeRigGeometry(ConfigOf(rig, canvas_width_px), CalibrationOf(rig), formats);
 }
 
+/// Frame sets that the live mode holds back.
+int HeldSets(const ScenarioRunOptions& options) {
+    return options.offline ? 0 : options.lookahead_frames;
+}
+
 algo::UnifiedVertexMotionOptions MotionOptions(const ScenarioRunOptions& options) {
     algo::UnifiedVertexMotionOptions motion;
-    motion.lookahead_frames = options.lookahead_frames;
+    motion.lookahead_frames = HeldSets(options);
     return motion;
 }
 
@@ -50,6 +56,24 @@ json StageJson(const AllStageTimes& times) {
     return stages;
 }
 
+/// The estimation of a drive.
+struct Motion {
+    std::unique_ptr<algo::VertexMotion> any;
+    algo::OfflineUnifiedVertexMotion* offline = nullptr;  ///< the same, if it needs a first pass
+};
+
+Motion MakeMotion(const RigGeometry& geometry, const ScenarioRunOptions& options) {
+    const algo::UnifiedVertexMotionOptions motion = MotionOptions(options);
+    if (!options.offline) {
+        return {
+            std::make_unique<algo::UnifiedVertexMotion>(geometry.canvas, geometry.units, motion)};
+    }
+    auto offline = std::make_unique<algo::OfflineUnifiedVertexMotion>(
+        geometry.canvas, geometry.units, algo::OfflineOptions{.motion = motion});
+    algo::OfflineUnifiedVertexMotion* const first_pass = offline.get();
+    return {std::move(offline), first_pass};
+}
+
 /// One rig, one pipeline and what looks at it.
 class Drive {
  public:
@@ -58,14 +82,15 @@ class Drive {
         : frames_to_show_(
               std::min(options.frames.value_or(rig.options().frames), rig.options().frames)),
           workers_(options.workers),
-          frames_(rig, options.lookahead_frames + 2, cache, workers_),
-          motion_(geometry.canvas, geometry.units, MotionOptions(options)),
-          pipeline_(geometry, motion_, workers_),
+          frames_(rig, HeldSets(options) + 2, cache, workers_),
+          motion_(MakeMotion(geometry, options)),
+          pipeline_(geometry, *motion_.any, workers_),
           meter_(rig, geometry),
           pictures_(pictures) {}
 
     json Run(const std::atomic<bool>& stop) {
         Prime();
+        Learn(stop);
         for (int frame = 0; frame < frames_to_show_ && !stop; ++frame)
             Look(pipeline_.Process(frames_.Take(frame)));
         while (const ShownPanorama* shown = pipeline_.Flush()) Look(shown);
@@ -83,6 +108,15 @@ class Drive {
         pipeline_.Start();
     }
 
+    /// The first pass of the offline form.
+    void Learn(const std::atomic<bool>& stop) {
+        if (motion_.offline == nullptr) return;
+        for (int frame = 0; frame < frames_to_show_ && !stop; ++frame)
+            motion_.offline->Learn(Borrow(frames_.Take(frame)), workers_);
+        motion_.offline->Solve();
+        frames_.Rewind();
+    }
+
     void Look(const ShownPanorama* shown) {
         if (shown == nullptr) return;
         meter_.Observe(*shown, pipeline_.map());
@@ -97,13 +131,24 @@ class Drive {
     int frames_to_show_;
     WorkerPool workers_;
     ScenarioFrames frames_;
-    algo::UnifiedVertexMotion motion_;
+    Motion motion_;
     Pipeline pipeline_;
     ScenarioMeter meter_;
     ScenarioPictures& pictures_;
 };
 
 }  // namespace
+
+std::string DriveName(const std::string& scenario, const ScenarioRunOptions& options) {
+    std::string name = scenario;
+    if (options.offline) {
+        name += "+all";
+    } else if (options.lookahead_frames > 0) {
+        name += '+';
+        name += std::to_string(options.lookahead_frames);
+    }
+    return name;
+}
 
 hal::Checked<json> RunScenario(const std::string& name,
                                const drivers::SimulationOptions& simulation,
@@ -115,9 +160,11 @@ hal::Checked<json> RunScenario(const std::string& name,
     const std::filesystem::path cache = options.cache.empty()
                                             ? options.cache
                                             : options.cache / (name + "-" + CacheKey(*rig.value()));
-    ScenarioPictures pictures(name, options.out,
+    ScenarioPictures pictures(DriveName(name, options), options.out,
                               options.frames.value_or(rig.value()->options().frames));
     json figures = Drive(*rig.value(), geometry.value(), options, cache, pictures).Run(stop);
+    figures["offline"] = options.offline;
+    figures["lookahead_frames"] = options.offline ? json() : json(options.lookahead_frames);
     if (const std::string refused = pictures.Write(); !refused.empty()) return refused;
     return figures;
 }

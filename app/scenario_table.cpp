@@ -60,7 +60,7 @@ std::string Cell(const json& figures, const Column& column) {
 
 std::string Name(const std::string& name) {
     char text[64];
-    std::snprintf(text, sizeof text, "%-18s", name.c_str());
+    std::snprintf(text, sizeof text, "%-20s", name.c_str());
     return text;
 }
 
@@ -68,7 +68,9 @@ std::string Name(const std::string& name) {
 
 std::string ScenarioHead() {
     std::string head =
-        "trac/trail: motion left, 1 to 15 Hz. far: strip misalignment beyond 10 m, px, median and "
+        "NAME: lookahead 0. NAME+N: N frames are seen ahead. NAME+all: the paper's form, all "
+        "are.\ntrac/trail: motion left, 1 to 15 Hz. far: strip misalignment beyond 10 m, px, "
+        "median and "
         "p95,\nlocked (*: all frames); near: 4 to 10 m. ovl, orac: whole overlap and oracle, px. "
         "theta: deg.\nfold: cells, A tractor, B trailer. cell, view: least stretch ratio. cov: of "
         "what geometry allows.\nwait: longest, s. jump: of the field, px. ms: a frame set, "

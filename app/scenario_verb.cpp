@@ -45,6 +45,28 @@ hal::Checked<std::vector<drivers::Scenario>> Chosen(const std::vector<std::strin
     return chosen;
 }
 
+/// Every way in which a scenario is driven.
+std::vector<ScenarioRunOptions> Runs(const ScenariosOptions& options) {
+    std::vector<ScenarioRunOptions> runs;
+    for (const int lookahead : options.lookaheads) {
+        runs.push_back(options.run);
+        runs.back().lookahead_frames = lookahead;
+    }
+    if (options.offline) {
+        runs.push_back(options.run);
+        runs.back().offline = true;
+    }
+    return runs;
+}
+
+drivers::SimulationOptions Simulation(const drivers::Scenario& scenario, int camera_width_px) {
+    drivers::SimulationOptions simulation = scenario.options;
+    simulation.width_px = camera_width_px;
+    simulation.height_px = camera_width_px * 9 / 16;
+    simulation.render_threads = 1;
+    return simulation;
+}
+
 }  // namespace
 
 int ScenariosVerb(const ScenariosOptions& options, const std::atomic<bool>& stop) {
@@ -53,16 +75,15 @@ int ScenariosVerb(const ScenariosOptions& options, const std::atomic<bool>& stop
     PrintNow(ScenarioHead());
     nlohmann::json report;
     for (const drivers::Scenario& scenario : chosen.value()) {
-        drivers::SimulationOptions simulation = scenario.options;
-        simulation.width_px = options.camera_width_px;
-        simulation.height_px = options.camera_width_px * 9 / 16;
-        simulation.render_threads = 1;
-        const std::string name(scenario.name);
-        const auto figures = RunScenario(name, simulation, options.run, stop);
-        if (!figures) return Fail(kMachineFailed, figures.error());
-        if (stop) return kStopped;
-        PrintNow(ScenarioRow(name, figures.value()));
-        report[name] = figures.value();
+        const auto simulation = Simulation(scenario, options.camera_width_px);
+        for (const ScenarioRunOptions& run : Runs(options)) {
+            const auto figures = RunScenario(std::string(scenario.name), simulation, run, stop);
+            if (!figures) return Fail(kMachineFailed, figures.error());
+            if (stop) return kStopped;
+            const std::string name = DriveName(std::string(scenario.name), run);
+            PrintNow(ScenarioRow(name, figures.value()));
+            report[name] = figures.value();
+        }
     }
     if (options.json.empty()) return 0;
     const std::string refused = WriteJson(report, options.json);

@@ -59,6 +59,16 @@ TEST(OfflineRunTest, ThePanoramaIsTheSameOnAnyNumberOfWorkers) {
     for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_TRUE(alone[i].bytes == shared[i].bytes);
 }
 
+TEST(OfflineRunTest, BothPassesTellHowFarTheyAre) {
+    const PlaneRigFiles rig(1);
+    std::vector<std::string> told;
+    const auto listen = [&](const char* step, std::uint64_t frames) {
+        told.push_back(std::string(step) + ' ' + std::to_string(frames));
+    };
+    RunAndKeep(rig.Rig(), {.frames = 2, .offline = true, .progress = listen});
+    EXPECT_THAT(told, testing::ElementsAre("learnt 1", "learnt 2", "shown 1", "shown 2"));
+}
+
 TEST(OfflineRunTest, ARunEndsAfterTheFramesAskedFor) {
     const PlaneRigFiles rig(1);
     EXPECT_EQ(RunAndKeep(rig.Rig(), {.frames = 5, .offline = true}).size(), 5U);

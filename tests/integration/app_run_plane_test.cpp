@@ -206,6 +206,49 @@ TEST_P(PlaneVideosTest, HaveOneFrameForEachSetAndAreBlackWhereThereIsNoData) {
 
 INSTANTIATE_TEST_SUITE_P(Lookahead, PlaneVideosTest, testing::Values(0, 4));
 
+/// Canvas positions of the middle of the tractor's view.
+std::vector<Vector2d> TractorPath(const std::vector<KeptPanorama>& kept) {
+    std::vector<Vector2d> path;
+    for (const KeptPanorama& shown : kept) {
+        path.push_back(
+            CornerOnCanvas(shown, Unit::kTractor, {0.5 * kSize.width, 0.5 * kSize.height}));
+    }
+    return path;
+}
+
+TEST(PlaneRunTest, TheRigFileChoosesTheSmoother) {
+    const PlaneRigFiles rig(3);
+    const auto by_default = TractorPath(RunAndKeep(rig.Rig()));
+    const std::string horizon = "stabilization: {smoother: receding_horizon}\n";
+    EXPECT_EQ(TractorPath(RunAndKeep(rig.Rig(horizon))), by_default);
+    const std::string weights = "stabilization: {smoother: paper_weights}\n";
+    const auto paper = TractorPath(RunAndKeep(rig.Rig(weights)));
+    ASSERT_EQ(paper.size(), by_default.size());
+    EXPECT_GT((paper.back() - by_default.back()).norm(), 0.05);
+    // Two outputs at rest, w(1) = .914 and w(2) = .698: 2 lambda (w1 + w2) / (1 + same) of the
+    // camera's first motion is taken back.
+    const Vector2d motion(3 * (std::sin(2.0) - std::sin(0.3)), 3 * (std::sin(2.9) - std::sin(0.6)));
+    EXPECT_LT((paper[1] - paper[0] - 0.7946 * motion).norm(), 0.05);
+}
+
+TEST(PlaneRunTest, WithACoveredBorderTwoShakingUnitsFillTheCanvas) {
+    const PlaneRigFiles rig(3);
+    const auto kept = RunAndKeep(rig.Rig("stabilization: {border: covered, cropping: 0.9}\n"));
+    ASSERT_EQ(kept.size(), PlaneRigFiles::kFrames);
+    for (const KeptPanorama& shown : kept) {
+        const auto is_covered = [&](int x, int y) {
+            return Inside(ViewPixel(shown, Unit::kTractor, x, y)) ||
+                   Inside(ViewPixel(shown, Unit::kTrailer, x, y));
+        };
+        for (int x = 0; x < kCanvas.width; ++x) {
+            EXPECT_TRUE(is_covered(x, 0) && is_covered(x, kCanvas.height - 1)) << x;
+        }
+        for (int y = 0; y < kCanvas.height; ++y) {
+            EXPECT_TRUE(is_covered(0, y) && is_covered(kCanvas.width - 1, y)) << y;
+        }
+    }
+}
+
 TEST(PlaneRunTest, TheShortestRecordingEndsTheRun) {
     const PlaneRigFiles rig(0);
     std::filesystem::remove(rig.folder() / "trailer/15.png");

@@ -7,13 +7,12 @@
 #include "algo/feature_tracker.hpp"
 #include "algo/multiband_blend.hpp"
 #include "algo/panorama_renderer.hpp"
-#include "algo/paper_weights_smoother.hpp"
-#include "algo/path_smoother.hpp"
 #include "algo/semi_surround_view.hpp"
 #include "algo/stabilization_motion_field.hpp"
 #include "algo/stitching_motion_field.hpp"
 #include "algo/trailer_placement.hpp"
 #include "algo/unified_vertex_motion.hpp"
+#include "algo/unit_smoother.hpp"
 #include "tests/support/heap_calls.hpp"
 #include "tests/support/hinged_rig.hpp"
 #include "tests/support/nv12_picture.hpp"
@@ -62,7 +61,8 @@ TEST_F(HeapTest, MotionEstimationTakesNoMemory) {
         std::make_unique<StitchingMotionField>(plane_, StitchingMotionFieldOptions{});
     const auto placement =
         std::make_unique<TrailerPlacement>(plane_, plane_, TrailerPlacementOptions{});
-    PathSmoother smoother({.lookahead_frames = 3});
+    UnitSmoother smoother(PathSmoother({.lookahead_frames = 3}));
+    UnitSmoother paper_smoother(WalledPaperWeights({.lookahead_frames = 3}));
     IntraMotion motion;
     EXPECT_EQ(HeapCallsOf([&] { field->Estimate(motions, {}, motion); }), 0U);
     EXPECT_TRUE(motion.known);
@@ -78,6 +78,7 @@ TEST_F(HeapTest, MotionEstimationTakesNoMemory) {
               }),
               0U);
     EXPECT_EQ(HeapCallsOf([&] { smoother.Next({}); }), 0U);
+    EXPECT_EQ(HeapCallsOf([&] { paper_smoother.Next({}); }), 0U);
 }
 
 TEST_F(HeapTest, RingEstimationTakesNoMemory) {

@@ -54,6 +54,7 @@ TEST_F(ConfigTest, AMinimalPlaneRigGetsItsDefaults) {
     EXPECT_TRUE(rig.calibration.empty());
     EXPECT_EQ(rig.stabilization.cropping, 0.90);
     EXPECT_EQ(rig.stabilization.lookahead_frames, 0);
+    EXPECT_EQ(rig.stabilization.smoother, StabilizationConfig::Smoother::kRecedingHorizon);
     EXPECT_EQ(rig.publish.panorama_channel, "PANORAMA");
     EXPECT_EQ(rig.workers, 2);
     EXPECT_FALSE(rig.period);
@@ -83,7 +84,7 @@ TEST_F(ConfigTest, WhatTheFileSaysReplacesTheDefaults) {
         Load(kPlane +
              "placement: {tractor: [0, -4], trailer: [540, 6]}\n"
              "stabilization: {border: covered, cropping: 0.8, enabled: false,"
-             " lookahead_frames: 10}\n"
+             " lookahead_frames: 10, smoother: paper_weights}\n"
              "stitching: {kappa: 0.25, enabled: false}\n"
              "threads: {workers: 7}\n"
              "period_ms: 40.5\n"
@@ -96,6 +97,7 @@ TEST_F(ConfigTest, WhatTheFileSaysReplacesTheDefaults) {
     EXPECT_EQ(rig.placement->of[1].x_px, 540);
     EXPECT_EQ(rig.stabilization.border, StabilizationConfig::Border::kCovered);
     EXPECT_EQ(rig.stabilization.lookahead_frames, 10);
+    EXPECT_EQ(rig.stabilization.smoother, StabilizationConfig::Smoother::kPaperWeights);
     EXPECT_FALSE(rig.stabilization.enabled);
     EXPECT_EQ(rig.stitching.kappa, 0.25);
     EXPECT_FALSE(rig.stitching.enabled);
@@ -153,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "publish"},
         BadFile{kPlane + "stabilization: {lookahead: 3}\n",
                 "rig.yaml:6: stabilization.lookahead is no key, must be one of enabled, "
-                "lookahead_frames, border, cropping"},
+                "lookahead_frames, border, cropping, smoother"},
         BadFile{kPlane + "stabilization:\n  lookahead_frames: 11\n",
                 "rig.yaml:7: stabilization.lookahead_frames is 11, must be 0 to 10"},
         BadFile{kPlane + "stabilization: {lookahead_frames: 2.5}\n",
@@ -168,6 +170,9 @@ INSTANTIATE_TEST_SUITE_P(
                 "rig.yaml:6: stabilization.cropping is nan, must be 0.5 to 1"},
         BadFile{kPlane + "stabilization: {border: open}\n",
                 "rig.yaml:6: stabilization.border is open, must be one of free, covered"},
+        BadFile{kPlane + "stabilization: {smoother: kalman}\n",
+                "rig.yaml:6: stabilization.smoother is kalman, must be one of receding_horizon, "
+                "paper_weights"},
         BadFile{kPlane + "stabilization: {enabled: yes}\n",
                 "rig.yaml:6: stabilization.enabled is yes, must be one of false, true"},
         BadFile{kPlane + "stabilization: 5\n", "rig.yaml:6: stabilization is 5, must be a map"},
