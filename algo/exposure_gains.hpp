@@ -4,7 +4,6 @@
 
 #include "algo/camera_frame.hpp"
 #include "algo/composed_map.hpp"
-#include "algo/panorama_renderer.hpp"
 
 namespace hitchview::algo {
 
