@@ -21,11 +21,12 @@ namespace {
 
 using drivers::SimulatedRig;
 
+constexpr int kWrongUse = 2;
 constexpr int kMachineFailed = 3;
 
-int Fail(const std::string& why) {
+int Fail(const std::string& why, int code = kMachineFailed) {
     std::fprintf(stderr, "%s\n", why.c_str());
-    return kMachineFailed;
+    return code;
 }
 
 hal::Checked<std::unique_ptr<SimulatedRig>> MakeDrive(const DemoOptions& options) {
@@ -129,7 +130,7 @@ class Demo {
 
 int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop) {
     const auto rig = MakeDrive(options);
-    if (!rig) return Fail(rig.error());
+    if (!rig) return Fail(rig.error(), kWrongUse);
     const auto recording = RecordDemo(*rig.value(), options.out / "recording", stop);
     if (!recording) return Fail(recording.error());
     Demo demo(options, *rig.value(), recording.value(), stop);
