@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "algo/camera_frame.hpp"
 #include "algo/composed_map.hpp"
 
