@@ -26,6 +26,7 @@ class ComposedMap {
         bool sees = false;  ///< x, y are meaningful
     };
 
+    /// Borrows `geometry`.
     ComposedMap(const Projection& canvas, const PerUnit<std::optional<UnitGeometry>>& geometry,
                 const SeamOptions& seam);
 

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <array>
-
 #include "algo/camera_frame.hpp"
 #include "algo/composed_map.hpp"
-#include "algo/panorama_renderer.hpp"
 
 namespace hitchview::algo {
 

@@ -1,7 +1,6 @@
 #include "algo/feature_tracker.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "algo/feature_mask.hpp"
 

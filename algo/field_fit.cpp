@@ -36,8 +36,7 @@ FieldFit::FieldFit(const Mesh& mesh, const FieldFitOptions& options)
 
 int FieldFit::Neighbour(int row, int col, int k) const {
     const int r = row + k / 3 - 1;
-    int c = col + k % 3 - 1;
-    if (mesh_.ring) c = (c + Mesh::kCols) % Mesh::kCols;
+    const int c = mesh_.WrappedColumn(col + k % 3 - 1);
     if (r < 0 || r > Mesh::kRows || c < 0 || c > Mesh::kCols) return -1;
     return Mesh::Index(r, c);
 }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <span>
 
 #include "algo/fixed_vector.hpp"
 #include "algo/motion_models.hpp"

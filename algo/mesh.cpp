@@ -1,7 +1,6 @@
 #include "algo/mesh.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace hitchview::algo {
 

@@ -24,6 +24,9 @@ struct Mesh {
           origin_px(ring ? -0.5 : 0.0, 0.0) {}
 
     static constexpr int Index(int row, int col) { return row * kVertexCols + col; }
+    /// On a ring the same column of vertices, counted from the first; else `col` itself. From
+    /// -kCols.
+    [[nodiscard]] int WrappedColumn(int col) const { return ring ? (col + kCols) % kCols : col; }
     [[nodiscard]] Eigen::Vector2d Vertex(int row, int col) const {
         return origin_px + Eigen::Vector2d{col * cell_px.x(), row * cell_px.y()};
     }

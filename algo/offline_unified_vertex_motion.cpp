@@ -3,6 +3,7 @@
 #include "algo/field_extension.hpp"
 #include "algo/fold_guard.hpp"
 #include "algo/overlap_discrepancy.hpp"
+#include "algo/placement_path.hpp"
 #include "algo/warp_factor.hpp"
 
 namespace hitchview::algo {

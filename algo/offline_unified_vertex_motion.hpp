@@ -5,7 +5,6 @@
 
 #include "algo/canvas_layout.hpp"
 #include "algo/paper_stages.hpp"
-#include "algo/placement_path.hpp"
 #include "algo/rig_motion.hpp"
 #include "algo/stitching_motion_field.hpp"
 #include "algo/vertex_motion.hpp"

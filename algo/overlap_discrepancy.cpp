@@ -12,22 +12,15 @@ OverlapDiscrepancy::OverlapDiscrepancy(const Projection& canvas,
     options_.propagation.shrink_votes = 0;  // few votes are less confidence, not a smaller motion
 }
 
-Vector2d OverlapDiscrepancy::Gap(const CanvasPair& pair) const {
-    return canvas_.Difference(pair.trailer_px, pair.tractor_px);
-}
-
-Vector2d OverlapDiscrepancy::MeetingPoint(const CanvasPair& pair) const {
-    return pair.tractor_px + options_.kappa * Gap(pair);
-}
-
 OverlapDiscrepancy::Plane OverlapDiscrepancy::FitPlane(const CanvasPairs& pairs) {
     Plane plane;
     if (pairs.count() < options_.homography_inliers) return plane;
     plane.origin_px = pairs[0].tractor_px;
     FixedVector<RayPair, kMaxCanvasPairs> rays;
     for (const CanvasPair& pair : pairs) {
-        const Vector2d from = canvas_.Difference(MeetingPoint(pair), plane.origin_px);
-        const Vector2d to = from + Gap(pair);
+        const PointMotion gap = DiscrepancyOf(pair, canvas_, options_.kappa);
+        const Vector2d from = canvas_.Difference(gap.at_px, plane.origin_px);
+        const Vector2d to = from + gap.motion_px;
         rays.push_back({from.homogeneous(), to.homogeneous()});
     }
     const auto fit = homography_.Fit(rays);
@@ -46,8 +39,7 @@ bool OverlapDiscrepancy::AllNeighboursHeard(const VertexScalars& votes, int row,
     const auto fewest = static_cast<float>(options_.propagation.min_votes);
     for (int r = std::max(row - 1, 0); r <= std::min(row + 1, Mesh::kRows); ++r) {
         for (int c = col - 1; c <= col + 1; ++c) {
-            const int cc =
-                mesh_.ring ? (c + Mesh::kCols) % Mesh::kCols : std::clamp(c, 0, Mesh::kCols);
+            const int cc = std::clamp(mesh_.WrappedColumn(c), 0, Mesh::kCols);
             if (votes(Mesh::Index(r, cc)) < fewest) return false;
         }
     }
@@ -59,8 +51,8 @@ void OverlapDiscrepancy::Measure(const CanvasPairs& pairs, MeasuredDiscrepancy& 
     const Plane plane = FitPlane(pairs);
     FixedVector<PointMotion, kMaxCanvasPairs> residuals;
     for (const CanvasPair& pair : pairs) {
-        const Vector2d at = MeetingPoint(pair);
-        residuals.push_back({at, Gap(pair) - GapOn(plane, at)});
+        const PointMotion gap = DiscrepancyOf(pair, canvas_, options_.kappa);
+        residuals.push_back({gap.at_px, gap.motion_px - GapOn(plane, gap.at_px)});
     }
     VertexField residual;
     VertexScalars votes;

@@ -37,8 +37,6 @@ class OverlapDiscrepancy {
         bool known = false;
     };
 
-    [[nodiscard]] Eigen::Vector2d Gap(const CanvasPair& pair) const;
-    [[nodiscard]] Eigen::Vector2d MeetingPoint(const CanvasPair& pair) const;
     [[nodiscard]] Plane FitPlane(const CanvasPairs& pairs);
     [[nodiscard]] Eigen::Vector2d GapOn(const Plane& plane, const Eigen::Vector2d& at_px) const;
     [[nodiscard]] bool AllNeighboursHeard(const VertexScalars& votes, int row, int col) const;

@@ -1,6 +1,5 @@
 #include "algo/patch_descriptor.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hitchview::algo {

@@ -38,7 +38,7 @@ int ReductionFor(const UnitGeometry& geometry, double scale) {
 }  // namespace
 
 SemiSurroundView::SemiSurroundView(const UnitGeometry& geometry, double scale)
-    : geometry_(&geometry), scale_(scale), reduction_(ReductionFor(geometry, scale)) {
+    : cameras_(geometry.cameras()), scale_(scale), reduction_(ReductionFor(geometry, scale)) {
     const Projection analysis = geometry.view().Scaled(scale);
     camera_ = cv::Mat_<std::uint8_t>(analysis.height_px, analysis.width_px, kNoCamera);
     sources_.resize(camera_.total());
@@ -47,7 +47,7 @@ SemiSurroundView::SemiSurroundView(const UnitGeometry& geometry, double scale)
             cv::Mat1b(geometry.camera_height_px(i) / reduction_,
                       geometry.camera_width_px(i) / reduction_, std::uint8_t{0});
     }
-    BuildMap();
+    BuildMap(geometry);
     MaskJoints();
     mask_ = calibrated_mask_.clone();
 }
@@ -60,12 +60,12 @@ std::optional<int> SemiSurroundView::CameraAt(const Eigen::Vector2f& analysis) c
     return camera_(y, x);
 }
 
-void SemiSurroundView::BuildMap() {
+void SemiSurroundView::BuildMap(const UnitGeometry& geometry) {
     UnitGeometry::Sights sights;
     for (int y = 0; y < camera_.rows; ++y) {
         for (int x = 0; x < camera_.cols; ++x) {
             const Eigen::Vector2d view = ToView({static_cast<float>(x), static_cast<float>(y)});
-            geometry_->See(geometry_->view().Ray(view), sights);
+            geometry.See(geometry.view().Ray(view), sights);
             const auto best = std::max_element(
                 sights.begin(), sights.end(),
                 [](const CameraSight& a, const CameraSight& b) { return a.weight < b.weight; });
@@ -95,7 +95,7 @@ void SemiSurroundView::MaskJoints() {
 }
 
 void SemiSurroundView::Compose(const UnitFrames& frames, cv::Mat1b& view) {
-    for (int i = 0; i < geometry_->cameras(); ++i) {
+    for (int i = 0; i < cameras_; ++i) {
         const CameraFrame& frame = frames[static_cast<std::size_t>(i)];
         if (frame.present()) Reduce(frame, reduced_[static_cast<std::size_t>(i)]);
     }
@@ -144,7 +144,7 @@ void SemiSurroundView::Reduce(const CameraFrame& frame, cv::Mat1b& reduced) cons
 
 void SemiSurroundView::UpdateMask(const UnitFrames& frames) {
     unsigned missing = 0;
-    for (int i = 0; i < geometry_->cameras(); ++i) {
+    for (int i = 0; i < cameras_; ++i) {
         if (!frames[static_cast<std::size_t>(i)].present()) missing |= 1U << i;
     }
     if (missing == masked_cameras_) return;

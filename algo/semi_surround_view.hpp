@@ -47,12 +47,12 @@ class SemiSurroundView {
         std::int16_t y = 0;
     };
 
-    void BuildMap();
+    void BuildMap(const UnitGeometry& geometry);
     void MaskJoints();
     void Reduce(const CameraFrame& frame, cv::Mat1b& reduced) const;
     void UpdateMask(const UnitFrames& frames);
 
-    const UnitGeometry* geometry_;
+    int cameras_;
     double scale_;
     int reduction_ = 1;  ///< camera pixels per reduced pixel, a power of two
     std::array<cv::Mat1b, kMaxCameras> reduced_;

@@ -27,10 +27,8 @@ void StitchingMotionField::Carry(const Eigen::Matrix3d& M_early_late) {
 }
 
 void StitchingMotionField::Update(const CanvasPairs& pairs) {
-    for (const CanvasPair& pair : pairs) {
-        const Vector2d e = canvas_.Difference(pair.trailer_px, pair.tractor_px);
-        samples_.push_back({pair.tractor_px + options_.kappa * e, e});
-    }
+    for (const CanvasPair& pair : pairs)
+        samples_.push_back(DiscrepancyOf(pair, canvas_, options_.kappa));
 }
 
 void StitchingMotionField::Extend() {

@@ -14,6 +14,12 @@ struct CanvasPair {
 inline constexpr std::size_t kMaxCanvasPairs = 1024;
 using CanvasPairs = FixedVector<CanvasPair, kMaxCanvasPairs>;
 
+/// e of one pair, at the point where both views meet; see StitchingMotionField.
+inline PointMotion DiscrepancyOf(const CanvasPair& pair, const Projection& canvas, double kappa) {
+    const Eigen::Vector2d e_px = canvas.Difference(pair.trailer_px, pair.tractor_px);
+    return {pair.tractor_px + kappa * e_px, e_px};
+}
+
 struct StitchingMotionFieldOptions {
     double kappa = 0.5;  ///< who moves: 0 the trailer alone, 1 the tractor alone
     FieldFitOptions fit{};

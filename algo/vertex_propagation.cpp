@@ -48,8 +48,7 @@ void MedianFilter(const Mesh& mesh, const VertexField& raw, VertexField& filtere
             for (int r = row - 1; r <= row + 1; ++r) {
                 for (int c = col - 1; c <= col + 1; ++c, ++n) {
                     const int rr = std::clamp(r, 0, Mesh::kRows);
-                    const int cc =
-                        mesh.ring ? (c + Mesh::kCols) % Mesh::kCols : std::clamp(c, 0, Mesh::kCols);
+                    const int cc = std::clamp(mesh.WrappedColumn(c), 0, Mesh::kCols);
                     window[0][n] = raw(0, Mesh::Index(rr, cc));
                     window[1][n] = raw(1, Mesh::Index(rr, cc));
                 }

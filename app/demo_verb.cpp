@@ -9,23 +9,24 @@
 #include "app/board.hpp"
 #include "app/demo_picture.hpp"
 #include "app/demo_recording.hpp"
-#include "app/demo_truth.hpp"
+#include "app/demo_table.hpp"
 #include "app/program.hpp"
 #include "app/report.hpp"
 #include "app/run_loop.hpp"
+#include "app/scenario_meter.hpp"
 #include "drivers/simulated_scenario.hpp"
 
 namespace hitchview::app {
 namespace {
 
-using algo::Unit;
 using drivers::SimulatedRig;
 
+constexpr int kWrongUse = 2;
 constexpr int kMachineFailed = 3;
 
-int Fail(const std::string& why) {
+int Fail(const std::string& why, int code = kMachineFailed) {
     std::fprintf(stderr, "%s\n", why.c_str());
-    return kMachineFailed;
+    return code;
 }
 
 hal::Checked<std::unique_ptr<SimulatedRig>> MakeDrive(const DemoOptions& options) {
@@ -57,8 +58,8 @@ int FrameOfLargestHitchAngle(const SimulatedRig& rig) {
 /// One run over the recording with what was learnt of it.
 struct DemoRun {
     RunSummary summary;
-    std::unique_ptr<TruthMeter> truth;
-    cv::Mat picture;  ///< the panorama of the chosen frame set
+    nlohmann::json truth;  ///< figures of ScenarioMeter
+    cv::Mat picture;       ///< the panorama of the chosen frame set
 };
 
 class Demo {
@@ -84,10 +85,10 @@ class Demo {
         if (!geometry) return geometry.error();
 
         DemoRun run;
-        run.truth = std::make_unique<TruthMeter>(rig_, geometry.value());
+        ScenarioMeter meter(rig_, geometry.value());
         auto summary = RunRig(config.value(), run_options, stop_,
                               [&](const ShownPanorama& shown, const Pipeline& pipeline) {
-                                  run.truth->Observe(shown, pipeline);
+                                  meter.Observe(shown, pipeline.map());
                                   // The chosen one may have been dropped: then the next one that
                                   // was shown.
                                   const bool reached =
@@ -97,6 +98,7 @@ class Demo {
                               });
         if (!summary) return summary.error();
         run.summary = *summary;
+        run.truth = meter.Figures();
         return run;
     }
 
@@ -124,59 +126,11 @@ class Demo {
     int chosen_;
 };
 
-nlohmann::json TruthJson(const TruthMeter& truth) {
-    nlohmann::json json;
-    for (const Unit unit : algo::kUnits) {
-        const TruthMeter::Shake shake = truth.ShakeOf(unit);
-        json["shake"][ToString(unit)] = {
-            {"input_px", shake.input_px},
-            {"output_px", shake.output_px},
-            {"ratio", shake.input_px > 0 ? nlohmann::json(shake.output_px / shake.input_px)
-                                         : nlohmann::json()},
-            {"samples", shake.samples}};
-    }
-    const TruthMeter::ArticulationError articulation = truth.ErrorOfArticulation();
-    json["articulation"] = nullptr;
-    if (articulation.samples > 0)
-        json["articulation"] = {{"rms_rad", articulation.rms_rad},
-                                {"largest_rad", articulation.largest_rad},
-                                {"samples", articulation.samples}};
-    const auto seam = [&](double from, double to) -> nlohmann::json {
-        const TruthMeter::Seam s = truth.SeamOf(from, to);
-        if (s.samples == 0) return nullptr;
-        return {{"median_px", s.median_px}, {"p95_px", s.p95_px}, {"samples", s.samples}};
-    };
-    json["seam"] = {{"beyond_10_m", seam(10, 1e9)}, {"4_to_10_m", seam(4, 10)}};
-    return json;
-}
-
-void PrintTruth(const TruthMeter& before, const TruthMeter& after) {
-    std::printf("against ground truth (canvas px):         before    after\n");
-    for (const Unit unit : algo::kUnits) {
-        std::printf("  shake of the %s, rms second diff. %7.2f  %7.2f\n", ToString(unit),
-                    after.ShakeOf(unit).input_px, after.ShakeOf(unit).output_px);
-    }
-    struct Range {
-        const char* name;
-        double from_m, to_m;
-    };
-    for (const Range& range : {Range{"beyond 10 m", 10, 1e9}, Range{"4 to 10 m  ", 4, 10}}) {
-        const TruthMeter::Seam b = before.SeamOf(range.from_m, range.to_m);
-        const TruthMeter::Seam a = after.SeamOf(range.from_m, range.to_m);
-        std::printf("  seam error %s, median       %7.2f  %7.2f\n", range.name, b.median_px,
-                    a.median_px);
-        std::printf("  seam error %s, p95          %7.2f  %7.2f\n", range.name, b.p95_px, a.p95_px);
-    }
-    const TruthMeter::ArticulationError articulation = after.ErrorOfArticulation();
-    std::printf("  articulation error, rms of %d: %.2f degrees\n", articulation.samples,
-                articulation.rms_rad * 57.29578);
-}
-
 }  // namespace
 
 int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop) {
     const auto rig = MakeDrive(options);
-    if (!rig) return Fail(rig.error());
+    if (!rig) return Fail(rig.error(), kWrongUse);
     const auto recording = RecordDemo(*rig.value(), options.out / "recording", stop);
     if (!recording) return Fail(recording.error());
     Demo demo(options, *rig.value(), recording.value(), stop);
@@ -196,10 +150,9 @@ int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop) {
     if (!before) return Fail(before.error());
 
     std::fputs(Table(after.value().summary).c_str(), stdout);
-    PrintTruth(*before.value().truth, *after.value().truth);
+    std::fputs(DemoTable(before.value().truth, after.value().truth).c_str(), stdout);
     nlohmann::json report = MakeReport(after.value().summary, nullptr);
-    report["truth"] = {{"before", TruthJson(*before.value().truth)},
-                       {"after", TruthJson(*after.value().truth)}};
+    report["truth"] = {{"before", before.value().truth}, {"after", after.value().truth}};
     for (const std::string& refused : {WriteJson(report, options.out / "report.json"),
                                        demo.WriteSheetOf(before.value(), after.value())}) {
         if (!refused.empty()) return Fail(refused);

@@ -18,7 +18,9 @@ struct DemoOptions {
 
 /// Drives the simulated vehicle through the whole real pipeline: renders the drive once into JPEG
 /// files, replays it through estimation, renderer and LCM, measures the result against the truth
-/// and writes panorama.avi, before_after.png and report.json. Returns the exit code.
+/// and writes panorama.avi, before_after.png and report.json: the report of a run, with the figures
+/// of ScenarioMeter in `truth.after`, and in `truth.before` those of the fixed calibration alone.
+/// Returns the exit code.
 int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace hitchview::app

@@ -1,6 +1,5 @@
 #include "app/evaluation_features.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <opencv2/calib3d.hpp>

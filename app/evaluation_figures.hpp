@@ -1,7 +1,6 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "app/evaluation_coverage.hpp"
 #include "app/evaluation_path.hpp"

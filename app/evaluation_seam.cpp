@@ -1,6 +1,5 @@
 #include "app/evaluation_seam.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>

@@ -38,7 +38,65 @@ void AddRunOptions(CLI::App& verb, ReplayOptions& options) {
                   "track the written views again and fill the report's quality figures");
 }
 
-void AddScenariosOptions(CLI::App& verb, ScenariosOptions& options) {
+CLI::App& AddDemo(CLI::App& app, DemoOptions& options) {
+    CLI::App& verb = *app.add_subcommand(
+        "demo",
+        "Drive the simulated vehicle through the whole pipeline; no hardware needed.\n"
+        "Example: hitchview demo --headless --out out/demo");
+    verb.add_flag("--headless", options.headless, "open no window");
+    verb.add_option("--out", options.out, "folder for recording, videos, picture and report")
+        ->capture_default_str();
+    verb.add_option("--frames", options.frames, "frame sets, 30 per second")
+        ->check(CLI::Range(30, 3000))
+        ->capture_default_str();
+    verb.add_option("--scenario", options.scenario,
+                    "drive by name, see docs/rig.example.yaml; otherwise a slow slalom");
+    verb.add_option("--camera-width", options.camera_width_px,
+                    "width of the simulated cameras, 16:9; 640 is enough for the default panorama "
+                    "and decodes faster")
+        ->check(CLI::IsMember({320, 640, 960, 1280, 1920}))
+        ->capture_default_str();
+    verb.add_option("--workers", options.workers, "threads that share the work of a frame")
+        ->check(CLI::Range(1, kMaxWorkers))
+        ->capture_default_str();
+    verb.add_flag("--realtime", options.realtime,
+                  "one frame set per camera period; late ones are dropped");
+    return verb;
+}
+
+CLI::App& AddReplay(CLI::App& app, ReplayOptions& options) {
+    CLI::App& verb = *app.add_subcommand(
+        "replay",
+        "Make panoramas from recordings, as fast as they can be read.\n"
+        "Example: hitchview replay --rig drive/rig.yaml --out out --write-video");
+    AddRunOptions(verb, options);
+    verb.add_flag("--realtime", options.run.realtime,
+                  "one frame set per period; late ones are dropped");
+    verb.add_flag("--offline", options.run.offline,
+                  "read the recordings twice: steadiest, needs memory for all of them");
+    verb.add_option("--coupling", options.coupling,
+                    "with --offline: how stitching and stabilisation are joined; literal (as the "
+                    "paper states it: stitched, not steadied) or corrected (default)")
+        ->check(CLI::IsMember({"literal", "corrected"}));
+    verb.add_flag("--publish", options.run.publish, "publish over LCM as the rig file says");
+    return verb;
+}
+
+void AddRun(CLI::App& app, ReplayOptions& options) {
+    CLI::App& verb =
+        *app.add_subcommand("run",
+                            "Make and publish panoramas at the cameras' pace until stopped.\n"
+                            "Example: hitchview run --rig /etc/hitchview/rig.yaml");
+    AddRunOptions(verb, options);
+    options.run.realtime = true;
+    options.run.publish = true;
+}
+
+CLI::App& AddScenarios(CLI::App& app, ScenariosOptions& options) {
+    CLI::App& verb = *app.add_subcommand(
+        "scenarios",
+        "Drive the simulated vehicle through many situations and measure against the truth.\n"
+        "Example: hitchview scenarios slalom --lookahead 0,3,5 --offline --cache out/cache");
     verb.add_option("name", options.names, "scenarios to drive; all unless given");
     verb.add_option("--frames", options.run.frames, "stop each after so many frame sets")
         ->check(CLI::Range(1, 36000));
@@ -62,6 +120,7 @@ void AddScenariosOptions(CLI::App& verb, ScenariosOptions& options) {
     verb.add_option("--cache", options.run.cache,
                     "folder where rendered frames are kept for the next time (1 to 2 GB each)");
     verb.add_option("--json", options.json, "file for all figures");
+    return verb;
 }
 
 /// Hands the arguments behind a verb to the program that does it.
@@ -83,61 +142,13 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
 
     DemoOptions demo;
-    CLI::App& demo_verb = *app.add_subcommand(
-        "demo",
-        "Drive the simulated vehicle through the whole pipeline; no hardware needed.\n"
-        "Example: hitchview demo --headless --out out/demo");
-    demo_verb.add_flag("--headless", demo.headless, "open no window");
-    demo_verb.add_option("--out", demo.out, "folder for recording, videos, picture and report")
-        ->capture_default_str();
-    demo_verb.add_option("--frames", demo.frames, "frame sets, 30 per second")
-        ->check(CLI::Range(30, 3000))
-        ->capture_default_str();
-    demo_verb.add_option("--scenario", demo.scenario,
-                         "drive by name, see docs/rig.example.yaml; otherwise a slow slalom");
-    demo_verb
-        .add_option("--camera-width", demo.camera_width_px,
-                    "width of the simulated cameras, 16:9; 640 is enough for the default panorama "
-                    "and decodes faster")
-        ->check(CLI::IsMember({320, 640, 960, 1280, 1920}))
-        ->capture_default_str();
-    demo_verb.add_option("--workers", demo.workers, "threads that share the work of a frame")
-        ->check(CLI::Range(1, kMaxWorkers))
-        ->capture_default_str();
-    demo_verb.add_flag("--realtime", demo.realtime,
-                       "one frame set per camera period; late ones are dropped");
-
+    const CLI::App& demo_verb = AddDemo(app, demo);
     ReplayOptions replay;
-    CLI::App& replay_verb = *app.add_subcommand(
-        "replay",
-        "Make panoramas from recordings, as fast as they can be read.\n"
-        "Example: hitchview replay --rig drive/rig.yaml --out out --write-video");
-    AddRunOptions(replay_verb, replay);
-    replay_verb.add_flag("--realtime", replay.run.realtime,
-                         "one frame set per period; late ones are dropped");
-    replay_verb.add_flag("--offline", replay.run.offline,
-                         "read the recordings twice: steadiest, needs memory for all of them");
-    replay_verb
-        .add_option("--coupling", replay.coupling,
-                    "with --offline: how stitching and stabilisation are joined; literal (as the "
-                    "paper states it: stitched, not steadied) or corrected (default)")
-        ->check(CLI::IsMember({"literal", "corrected"}));
-    replay_verb.add_flag("--publish", replay.run.publish, "publish over LCM as the rig file says");
-
+    const CLI::App& replay_verb = AddReplay(app, replay);
     ReplayOptions run;
-    CLI::App& run_verb =
-        *app.add_subcommand("run",
-                            "Make and publish panoramas at the cameras' pace until stopped.\n"
-                            "Example: hitchview run --rig /etc/hitchview/rig.yaml");
-    AddRunOptions(run_verb, run);
-
+    AddRun(app, run);
     ScenariosOptions scenarios;
-    CLI::App& scenarios_verb = *app.add_subcommand(
-        "scenarios",
-        "Drive the simulated vehicle through many situations and measure against the truth.\n"
-        "Example: hitchview scenarios slalom --lookahead 0,3,5 --offline --cache out/cache");
-    AddScenariosOptions(scenarios_verb, scenarios);
-
+    const CLI::App& scenarios_verb = AddScenarios(app, scenarios);
     app.add_subcommand("view", "Show the published panorama: hitchview view --help");
     app.add_subcommand("eval", "Measure recordings of views and panoramas: hitchview eval --help");
 
@@ -149,7 +160,5 @@ int main(int argc, char** argv) {
     if (demo_verb.parsed()) return DemoVerb(demo, stop);
     if (replay_verb.parsed()) return ReplayVerb(replay, stop);
     if (scenarios_verb.parsed()) return ScenariosVerb(scenarios, stop);
-    run.run.realtime = true;
-    run.run.publish = true;
     return ReplayVerb(run, stop);
 }

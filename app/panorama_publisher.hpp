@@ -1,10 +1,8 @@
 #pragma once
 
 #include <atomic>
-#include <memory>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "app/jpeg_encoder.hpp"
 #include "app/telemetry_thread.hpp"

@@ -1,7 +1,6 @@
 #include "app/truth_field.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <array>
 
 namespace hitchview::app {
@@ -18,6 +17,9 @@ struct Unknowns {
     explicit Unknowns(const Mesh& mesh)
         : cols(mesh.ring ? Mesh::kCols : Mesh::kVertexCols), count(Mesh::kVertexRows * cols) {}
     [[nodiscard]] int At(int row, int col) const { return row * cols + col % cols; }
+    [[nodiscard]] int Of(int vertex) const {
+        return At(vertex / Mesh::kVertexCols, vertex % Mesh::kVertexCols);
+    }
 
     int cols;
     int count;
@@ -30,18 +32,13 @@ struct Corners {
 };
 
 Corners CornersOf(const Mesh& mesh, const Unknowns& unknowns, const Eigen::Vector2d& pixel) {
-    const double x = mesh.ring ? algo::WrapColumn(pixel.x(), mesh.width_px) : pixel.x();
-    const double u =
-        std::clamp((x - mesh.origin_px.x()) / mesh.cell_px.x(), 0.0, Mesh::kCols - 1e-6);
-    const double v =
-        std::clamp((pixel.y() - mesh.origin_px.y()) / mesh.cell_px.y(), 0.0, Mesh::kRows - 1e-6);
-    const int col = static_cast<int>(u);
-    const int row = static_cast<int>(v);
-    const double fx = u - col;
-    const double fy = v - row;
-    return {{unknowns.At(row, col), unknowns.At(row, col + 1), unknowns.At(row + 1, col),
-             unknowns.At(row + 1, col + 1)},
-            {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
+    const algo::MeshPlace place = algo::Locate(mesh, pixel);
+    Corners corners;
+    for (std::size_t i = 0; i < 4; ++i) {
+        corners.unknown[i] = unknowns.Of(place.vertex[i]);
+        corners.weight[i] = double{place.share[i]};
+    }
+    return corners;
 }
 
 class NormalEquations {

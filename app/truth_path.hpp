@@ -9,7 +9,8 @@
 namespace hitchview::app {
 
 /// How steadily the canvas shows far landmarks all round: their paths in each unit's view as it was
-/// taken, and on the canvas. Frames are observed in order.
+/// taken, and on the canvas. Frames are observed in order; those dropped in between count as if
+/// they had never been taken.
 class TruthPath {
  public:
     /// Vibration of a vehicle on its springs and tyres; steering is slower.

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-#include <vector>
-
 #include "algo/composition.hpp"
 
 namespace hitchview::app {

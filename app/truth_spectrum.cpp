@@ -1,7 +1,6 @@
 #include "app/truth_spectrum.hpp"
 
 #include <Eigen/Dense>
-#include <cmath>
 #include <complex>
 #include <numbers>
 #include <unsupported/Eigen/FFT>

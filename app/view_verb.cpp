@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
 #include <opencv2/highgui.hpp>
 #include <opencv2/imgcodecs.hpp>
 

@@ -6,7 +6,7 @@
 #include "app/replay_verb.hpp"
 #include "tests/support/plane_rig_files.hpp"
 #include "tests/support/shown_panoramas.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -83,7 +83,7 @@ TEST(OfflineRunTest, AReportAndVideosAreWrittenAsInAnyReplay) {
                                 .run = {.out = out, .offline = true, .write_views = true}};
     EXPECT_EQ(ReplayVerb(options, stop), 0);
     testing::internal::GetCapturedStdout();
-    const auto report = nlohmann::json::parse(test_support::FileText(out + "/report.json"));
+    const auto report = nlohmann::json::parse(tests::FileText(out + "/report.json"));
     EXPECT_EQ(report.at("frames"), PlaneRigFiles::kFrames);
     EXPECT_EQ(report.at("seams").at("right").at("locked_share"), 1);
     EXPECT_TRUE(std::filesystem::exists(out + "/tractor.avi"));

@@ -6,7 +6,7 @@
 
 #include "app/replay_verb.hpp"
 #include "tests/support/plane_rig_files.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -41,11 +41,11 @@ class RefusalTest : public testing::Test {
         EXPECT_FALSE(std::filesystem::exists(out));
     }
     std::string Ring(const std::string& units, const std::string& simulation) {
-        return tests::WriteText(folder_ / "rig.yaml",
-                                "schema: 1\n"
-                                "canvas: {projection: cylinder, size_px: [1024, 180]}\n"
-                                "calibration: rig.calib.yaml\n" +
-                                    units + "simulation: " + simulation + "\n");
+        return folder_.Write("rig.yaml",
+                             "schema: 1\n"
+                             "canvas: {projection: cylinder, size_px: [1024, 180]}\n"
+                             "calibration: rig.calib.yaml\n" +
+                                 units + "simulation: " + simulation + "\n");
     }
 
     tests::TemporaryFolder folder_;
@@ -53,11 +53,11 @@ class RefusalTest : public testing::Test {
 
 TEST_F(RefusalTest, AMissingRecordingIsNamed) {
     const std::string rig =
-        tests::WriteText(folder_ / "rig.yaml",
-                         "schema: 1\n"
-                         "canvas: {projection: plane, size_px: [640, 300]}\n"
-                         "units:\n"
-                         "  tractor: {cameras: [{name: a, source: {replay: no.avi}}]}\n");
+        folder_.Write("rig.yaml",
+                      "schema: 1\n"
+                      "canvas: {projection: plane, size_px: [640, 300]}\n"
+                      "units:\n"
+                      "  tractor: {cameras: [{name: a, source: {replay: no.avi}}]}\n");
     ExpectRefused(rig, 3, "no.avi: no such file");
 }
 
@@ -86,16 +86,16 @@ TEST_F(RefusalTest, AScenarioThatThereIsNotIsNamedWithThoseThatThereAre) {
 
 TEST_F(RefusalTest, ASimulatedCameraThatTheRigDoesNotHaveIsNamed) {
     const std::string rig =
-        tests::WriteText(folder_ / "rig.yaml",
-                         "schema: 1\n"
-                         "canvas: {projection: plane, size_px: [640, 300]}\n"
-                         "units:\n"
-                         "  tractor: {cameras: [{name: mast, source: {simulated: true}}]}\n");
+        folder_.Write("rig.yaml",
+                      "schema: 1\n"
+                      "canvas: {projection: plane, size_px: [640, 300]}\n"
+                      "units:\n"
+                      "  tractor: {cameras: [{name: mast, source: {simulated: true}}]}\n");
     ExpectRefused(rig, 3, "camera mast of the tractor is not one that the simulated rig has");
 }
 
 TEST_F(RefusalTest, ARigFileWithMistakesIsWrongUse) {
-    ExpectRefused(tests::WriteText(folder_ / "rig.yaml", "schema: 2\n"), 2, "schema is 2, must be");
+    ExpectRefused(folder_.Write("rig.yaml", "schema: 2\n"), 2, "schema is 2, must be");
 }
 
 TEST_F(RefusalTest, VideosNeedAFolder) {
@@ -112,7 +112,7 @@ json RunAndReadReport(const tests::PlaneRigFiles& rig, bool metrics) {
     testing::internal::CaptureStdout();
     EXPECT_EQ(ReplayVerb({.rig = rig.Rig(), .run = {.out = out}, .metrics = metrics}, stop), 0);
     testing::internal::GetCapturedStdout();
-    return json::parse(test_support::FileText(out + "/report.json"));
+    return json::parse(tests::FileText(out + "/report.json"));
 }
 
 TEST(ReportTest, HasEveryFigureAndNullForWhatWasNotMeasured) {

@@ -9,14 +9,14 @@
 #include "app/report.hpp"
 #include "tests/support/shown_panoramas.hpp"
 #include "tests/support/simulated_rig_files.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace hitchview::app {
 namespace {
 
-using test_support::FileText;
 using testing::HasSubstr;
 using testing::Not;
+using tests::FileText;
 using tests::KeptPanorama;
 using tests::RunAndKeep;
 
@@ -31,12 +31,12 @@ class SimulatedRunTest : public testing::Test {
     std::string Rig(const std::string& more = "") {
         const std::string units =
             tests::SimulatedUnits([](const std::string&) { return "{simulated: true}"; });
-        return tests::WriteText(folder_ / "rig.yaml",
-                                "schema: 1\n"
-                                "canvas: {projection: cylinder, size_px: [1024, 180]}\n"
-                                "calibration: rig.calib.yaml\n" +
-                                    units + "simulation: {frames: " + std::to_string(kFrames) +
-                                    ", camera_size_px: [320, 180]}\n" + more);
+        return folder_.Write("rig.yaml",
+                             "schema: 1\n"
+                             "canvas: {projection: cylinder, size_px: [1024, 180]}\n"
+                             "calibration: rig.calib.yaml\n" +
+                                 units + "simulation: {frames: " + std::to_string(kFrames) +
+                                 ", camera_size_px: [320, 180]}\n" + more);
     }
 
     /// Goes with a `can:` section; what is published ends up in the file.
@@ -81,7 +81,7 @@ TEST_F(SimulatedRunTest, TheHitchAngleNeverReachesThePanorama) {
     EXPECT_THAT(FileText(folder_ / "true.lcm"), HasSubstr("HITCH_ANGLE"));
     ExpectSame(without, published);
 
-    tests::WriteText(folder_ / "can0.log", WildAngles());
+    folder_.Write("can0.log", WildAngles());
     const std::string wild = "can:\n  source: {candump: can0.log}\n" + hitch_angle;
     const auto misled = RunAndKeep(Rig(wild + PublishTo("wild.lcm")), {.publish = true});
     EXPECT_THAT(FileText(folder_ / "wild.lcm"), HasSubstr("HITCH_ANGLE"));

@@ -15,7 +15,7 @@
 #include "lcmtypes/hitchview_hitch_angle_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 #include "tests/support/simulated_rig_files.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 // `hitchview run` beside programs of other people. Runs in a network namespace of its own
 // (tests/support/lcm_namespace.sh).
@@ -132,12 +132,11 @@ class LcmRunTest : public testing::Test {
 
     /// `hitchview run` on the recorded drive with the usual canvas, logged to `log.lcm`.
     void Run(const std::string& more) {
-        const std::string rig = tests::WriteText(
-            *folder_ / "rig.yaml",
-            "schema: 1\ncanvas: {projection: cylinder}\ncalibration: rig.calib.yaml\n" +
-                tests::SimulatedUnits(
-                    [](const std::string& name) { return "{replay: " + name + "}"; }) +
-                more);
+        const std::string rig = folder_->Write(
+            "rig.yaml", "schema: 1\ncanvas: {projection: cylinder}\ncalibration: rig.calib.yaml\n" +
+                            tests::SimulatedUnits(
+                                [](const std::string& name) { return "{replay: " + name + "}"; }) +
+                            more);
         std::filesystem::remove(*folder_ / "log.lcm");
         Receiver receiver(kFrames);
         {
@@ -151,7 +150,7 @@ class LcmRunTest : public testing::Test {
             std::this_thread::sleep_for(milliseconds(500));
         }
         counts_ = receiver.Finish();
-        report_ = nlohmann::json::parse(test_support::FileText(*folder_ / "out/report.json"));
+        report_ = nlohmann::json::parse(tests::FileText(*folder_ / "out/report.json"));
         log_ = ReadLog(*folder_ / "log.lcm");
     }
 

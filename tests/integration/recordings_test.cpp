@@ -26,8 +26,8 @@ class RecordingsTest : public testing::Test {
         if (tractor_.empty() || trailer_.empty()) {
             GTEST_SKIP() << recording.tractor << " is not there: set HITCHVIEW_TEST_DATA";
         }
-        const std::string file = tests::WriteText(
-            folder_ / "rig.yaml",
+        const std::string file = folder_.Write(
+            "rig.yaml",
             "schema: 1\ncanvas: {projection: plane, size_px: [" + recording.canvas +
                 "]}\nunits:\n" + "  tractor: {cameras: [{name: a, source: {replay: " + tractor_ +
                 "}}]}\n" + "  trailer: {cameras: [{name: b, source: {replay: " + trailer_ +
@@ -127,8 +127,8 @@ TEST_P(ClipTest, IsAsSteadyAsItsSettingAllows) {
         GTEST_SKIP() << GetParam().name << " is not there: set HITCHVIEW_TEST_DATA";
     }
     const tests::TemporaryFolder folder;
-    const std::string file = tests::WriteText(
-        folder / "rig.yaml",
+    const std::string file = folder.Write(
+        "rig.yaml",
         "schema: 1\ncanvas: {projection: plane, size_px: [640, 360]}\nunits:\n  tractor: "
         "{cameras: [{name: a, source: {replay: " +
             clip + "}}]}\nstabilization: {" + GetParam().stabilization + "}\n");

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "algo/camera_frame.hpp"
-#include "algo/panorama_renderer.hpp"
+#include "algo/panorama_planes.hpp"
 
 namespace hitchview::tests {
 

@@ -49,13 +49,13 @@ class PlaneRigFiles {
 
     /// `more`: further keys of the rig file.
     [[nodiscard]] std::string Rig(const std::string& more = "") const {
-        return WriteText(*folder_ / "rig.yaml",
-                         "schema: 1\n"
-                         "canvas: {projection: plane, size_px: [640, 300]}\n"
-                         "units:\n"
-                         "  tractor: {cameras: [{name: a, source: {replay: tractor}}]}\n"
-                         "  trailer: {cameras: [{name: b, source: {replay: trailer}}]}\n" +
-                             more);
+        return folder_->Write("rig.yaml",
+                              "schema: 1\n"
+                              "canvas: {projection: plane, size_px: [640, 300]}\n"
+                              "units:\n"
+                              "  tractor: {cameras: [{name: a, source: {replay: tractor}}]}\n"
+                              "  trailer: {cameras: [{name: b, source: {replay: trailer}}]}\n" +
+                                  more);
     }
     [[nodiscard]] const TemporaryFolder& folder() const { return *folder_; }
 

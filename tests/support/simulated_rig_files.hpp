@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <string>
 
 #include "calib/rig_calibration.hpp"
@@ -10,12 +9,6 @@
 #include "tests/support/temporary_folder.hpp"
 
 namespace hitchview::tests {
-
-/// Writes a text file; the path again.
-inline std::string WriteText(const std::string& path, const std::string& text) {
-    std::ofstream(path, std::ios::binary) << text;
-    return path;
-}
 
 /// `rig.calib.yaml` of the simulated rig, for cameras of this size.
 inline void WriteSimulatedCalibration(const TemporaryFolder& folder, int width_px, int height_px) {

@@ -59,7 +59,7 @@ class SixCameraRing {
                 text += "      - {name: " + name + ", source: {replay: " + name + "}}\n";
             }
         }
-        return WriteText(folder_ / "rig.yaml", text);
+        return folder_.Write("rig.yaml", text);
     }
     /// Of one camera's picture.
     [[nodiscard]] std::string Picture(const std::string& name) const {

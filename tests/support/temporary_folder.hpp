@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 
 #include "hal/expect.hpp"
@@ -26,8 +28,20 @@ class TemporaryFolder {
     [[nodiscard]] std::string operator/(const std::string& name) const { return path_ / name; }
     [[nodiscard]] std::string path() const { return path_; }
 
+    /// A text file in the folder; its path.
+    std::string Write(const std::string& name, const std::string& text) const {
+        std::ofstream(path_ / name, std::ios::binary) << text;
+        return path_ / name;
+    }
+
  private:
     std::filesystem::path path_;
 };
+
+inline std::string FileText(const std::filesystem::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+}
 
 }  // namespace hitchview::tests

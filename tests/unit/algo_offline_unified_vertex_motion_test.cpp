@@ -3,9 +3,8 @@
 #include <numbers>
 
 #include "algo/offline_unified_vertex_motion.hpp"
-#include "tests/support/nv12_picture.hpp"
+#include "tests/support/flat_world.hpp"
 #include "tests/support/shaky_profiles.hpp"
-#include "tests/support/sine_texture.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -21,8 +20,6 @@ const Projection kCanvas = Projection::Plane(620, 280);
 class ShakingWindows {
  public:
     ShakingWindows() {
-        const tests::SineTexture texture(3);
-        world_ = texture.Shifted({700, 320}, 0, 0);
         cv::RNG random(6);
         for (int i = 0; i < kFrames; ++i) {
             const auto shake = [&] { return random.uniform(-4, 5); };
@@ -40,10 +37,8 @@ class ShakingWindows {
         if (two_units) geometry[Unit::kTrailer] = geometry[Unit::kTractor];
         OfflineUnifiedVertexMotion sut(kCanvas, geometry, options);
         SerialRunner runner;
-        EXPECT_TRUE(WithFrames(0, [&](const RigFrames& f) { return sut.Prime(f, runner); }));
-        for (int i = 0; i < kFrames; ++i) {
-            WithFrames(i, [&](const RigFrames& f) { return sut.Learn(f, runner), true; });
-        }
+        EXPECT_TRUE(sut.Prime(Look(0).frames, runner));
+        for (int i = 0; i < kFrames; ++i) sut.Learn(Look(i).frames, runner);
         sut.Solve();
         std::vector<Composition> compositions;
         while (const Composition* c = sut.Step({}, runner)) compositions.push_back(*c);
@@ -65,20 +60,12 @@ class ShakingWindows {
     }
 
  private:
-    template <typename Use>
-    bool WithFrames(int frame, Use&& use) const {
-        std::vector<tests::Nv12Picture> pictures;
-        RigFrames frames;
-        for (const Unit unit : kUnits) {
-            const cv::Point corner = corner_[unit][static_cast<std::size_t>(frame)];
-            pictures.emplace_back(world_(cv::Rect(corner, kView)));
-        }
-        frames[Unit::kTractor][0] = pictures[0].frame();
-        frames[Unit::kTrailer][0] = pictures[1].frame();
-        return use(frames);
+    [[nodiscard]] tests::PlaneFrames Look(int frame) const {
+        const auto i = static_cast<std::size_t>(frame);
+        return world_.Look({{corner_[Unit::kTractor][i], corner_[Unit::kTrailer][i]}});
     }
 
-    cv::Mat1b world_;
+    tests::FlatWorld world_{kView, 3};
     PerUnit<std::vector<cv::Point>> corner_;
 };
 

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "app/config.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -35,9 +35,8 @@ std::string Mutated(std::string text, Random& random) {
 }
 
 TEST(ConfigMutationTest, ADamagedFileIsReadOrRefusedWithAReason) {
-    const test_support::TempFolder folder;
-    const std::string example =
-        test_support::FileText(HITCHVIEW_SOURCE_DIR "/docs/rig.example.yaml");
+    const tests::TemporaryFolder folder;
+    const std::string example = tests::FileText(HITCHVIEW_SOURCE_DIR "/docs/rig.example.yaml");
     Random random(7);
     int refused = 0;
     for (int i = 0; i < 400; ++i) {

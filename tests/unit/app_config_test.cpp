@@ -2,7 +2,7 @@
 
 #include "app/config.hpp"
 #include "drivers/simulated_scenario.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -34,14 +34,14 @@ class ConfigTest : public testing::Test {
         const auto config = Load(text);
         if (config.ok()) return "no error";
         std::string error = config.error();
-        const std::string folder = folder_.path().string() + '/';
+        const std::string folder = folder_.path() + '/';
         for (auto at = error.find(folder); at != error.npos; at = error.find(folder)) {
             error.erase(at, folder.size());
         }
         return error;
     }
 
-    test_support::TempFolder folder_;
+    tests::TemporaryFolder folder_;
 };
 
 TEST_F(ConfigTest, AMinimalPlaneRigGetsItsDefaults) {
@@ -65,8 +65,7 @@ TEST_F(ConfigTest, AMinimalPlaneRigGetsItsDefaults) {
 TEST_F(ConfigTest, RelativePathsStandRelativeToTheFile) {
     const auto config = Load(kPlane);
     ASSERT_TRUE(config.ok()) << config.error();
-    EXPECT_EQ(config.value().units[Unit::kTractor].cameras.at(0).replay,
-              folder_.path() / "left.avi");
+    EXPECT_EQ(config.value().units[Unit::kTractor].cameras.at(0).replay, folder_ / "left.avi");
     EXPECT_EQ(config.value().units[Unit::kTrailer].cameras.at(0).replay, "/data/right.avi");
 }
 
@@ -311,9 +310,9 @@ TEST(RigExampleTest, LoadsAndShowsTheDefaults) {
     EXPECT_EQ(rig.simulation.speed_mps, simulation.speed_mps);
     EXPECT_EQ(rig.simulation.noise, simulation.noise_sigma);
     for (const drivers::Scenario& scenario : drivers::Scenarios()) {
-        EXPECT_NE(test_support::FileText(HITCHVIEW_SOURCE_DIR "/docs/rig.example.yaml")
-                      .find(scenario.name),
-                  std::string::npos)
+        EXPECT_NE(
+            tests::FileText(HITCHVIEW_SOURCE_DIR "/docs/rig.example.yaml").find(scenario.name),
+            std::string::npos)
             << scenario.name;
     }
     EXPECT_EQ(rig.workers, defaults.workers);
@@ -327,8 +326,7 @@ class RigExampleKeysTest : public ConfigTest, public testing::WithParamInterface
 
 /// The reader itself lists the keys of a section when it meets one that it does not know.
 TEST_P(RigExampleKeysTest, EveryKeyOfTheSectionIsShown) {
-    const std::string example =
-        test_support::FileText(HITCHVIEW_SOURCE_DIR "/docs/rig.example.yaml");
+    const std::string example = tests::FileText(HITCHVIEW_SOURCE_DIR "/docs/rig.example.yaml");
     const std::string error = ErrorOf(kSimulated + GetParam());
     const std::string before = "x is no key, must be one of ";
     const auto start = error.find(before);

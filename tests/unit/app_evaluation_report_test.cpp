@@ -242,7 +242,7 @@ TEST(SummaryTest, HasTheMeansBesideThePublishedFigures) {
 TEST(SummaryTest, WhatCannotBeReadIsNamed) {
     const tests::TemporaryFolder folder;
     EXPECT_THAT(Summarise({folder / "none.json"}).error(), HasSubstr("none.json: cannot be read"));
-    std::ofstream(folder / "bad.json") << "{";
+    folder.Write("bad.json", "{");
     EXPECT_THAT(Summarise({folder / "bad.json"}).error(), HasSubstr("bad.json: not a file of"));
 }
 

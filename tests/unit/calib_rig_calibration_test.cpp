@@ -4,7 +4,7 @@
 
 #include "app/config.hpp"
 #include "calib/rig_calibration.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace hitchview::calib {
 namespace {
@@ -48,18 +48,18 @@ RigCalibration TwoCameras() {
 
 class RigCalibrationTest : public testing::Test {
  protected:
-    std::filesystem::path file() const { return folder_.path() / "calib.yaml"; }
+    std::filesystem::path file() const { return folder_ / "calib.yaml"; }
 
     std::string ErrorOf(const std::string& text) {
         std::string error = LoadCalibration(folder_.Write("calib.yaml", text)).error;
-        const std::string folder = folder_.path().string() + '/';
+        const std::string folder = folder_.path() + '/';
         for (auto at = error.find(folder); at != error.npos; at = error.find(folder)) {
             error.erase(at, folder.size());
         }
         return error;
     }
 
-    test_support::TempFolder folder_;
+    tests::TemporaryFolder folder_;
 };
 
 TEST_F(RigCalibrationTest, ReadsBackWhatItWroteBitForBit) {
@@ -90,13 +90,13 @@ TEST_F(RigCalibrationTest, ReadsBackWhatItWroteBitForBit) {
 
 TEST_F(RigCalibrationTest, WhatCannotBeReadBackReplacesNothing) {
     ASSERT_EQ(SaveCalibration(TwoCameras(), file()), "");
-    const std::string before = test_support::FileText(file());
+    const std::string before = tests::FileText(file());
     RigCalibration bad = TwoCameras();
     bad.cameras.at("front").model.fx_px = -1;
     EXPECT_NE(SaveCalibration(bad, file()).find("focal_px[0] is -1, must be 10 to 20000"),
               std::string::npos);
-    EXPECT_EQ(test_support::FileText(file()), before);
-    EXPECT_NE(SaveCalibration(TwoCameras(), folder_.path() / "no" / "folder.yaml"), "");
+    EXPECT_EQ(tests::FileText(file()), before);
+    EXPECT_NE(SaveCalibration(TwoCameras(), folder_ / "no/folder.yaml"), "");
 }
 
 TEST_F(RigCalibrationTest, TheIdStandsForLensesAndPlacesOnly) {
@@ -191,7 +191,7 @@ TEST_F(RigCalibrationTest, BadFilesAreRefusedWithFileLineKeyValueAndRange) {
 }
 
 TEST_F(RigCalibrationTest, TheExampleInTheConventionsLoads) {
-    const std::string page = test_support::FileText(HITCHVIEW_SOURCE_DIR "/docs/conventions.md");
+    const std::string page = tests::FileText(HITCHVIEW_SOURCE_DIR "/docs/conventions.md");
     const std::string fence = "```yaml\n";
     const auto start = page.find(fence) + fence.size();
     EXPECT_EQ(ErrorOf(page.substr(start, page.find("```", start) - start)), "");

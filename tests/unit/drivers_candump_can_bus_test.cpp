@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,10 +37,7 @@ class CandumpCanBusTest : public testing::Test {
         return bus ? "" : bus.error();
     }
 
-    std::string Write(const std::string& text) {
-        std::ofstream(path_, std::ios::binary) << text;
-        return path_;
-    }
+    std::string Write(const std::string& text) { return folder_.Write("can0.log", text); }
 
     tests::TemporaryFolder folder_;
     const std::string path_ = folder_ / "can0.log";

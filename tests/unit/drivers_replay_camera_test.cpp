@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -159,7 +158,7 @@ TEST(ReplayCameraTest, AFolderIsReadInNaturalOrder) {
         const cv::Mat grey(16, 16, CV_8UC3, cv::Scalar::all(10 * i));
         ASSERT_TRUE(cv::imwrite(folder / cv::format("frame%d.png", i), grey));
     }
-    std::ofstream(folder / "notes.txt") << "no picture";
+    folder.Write("notes.txt", "no picture");
     const auto camera = Open(folder.path());
     for (const int i : {1, 2, 9, 10}) {
         const auto frame = camera->WaitFrame(kLong);
@@ -186,7 +185,7 @@ TEST(ReplayCameraTest, ADamagedOrDifferentPictureIsReportedInItsPlace) {
     ASSERT_TRUE(cv::imwrite(folder / "1.jpg", ColourWaves({32, 48}, 1)));
     std::filesystem::resize_file(folder / "2.jpg",
                                  std::filesystem::file_size(folder / "2.jpg") / 2);
-    std::ofstream(folder / "3.jpg", std::ios::trunc) << "not a picture";
+    folder.Write("3.jpg", "not a picture");
     const auto camera = Open(folder / "%d.jpg");
     EXPECT_TRUE(camera->WaitFrame(kLong));
     for (int i = 1; i < 4; ++i) {
@@ -201,7 +200,7 @@ TEST(ReplayCameraTest, ADamagedOrDifferentPictureIsReportedInItsPlace) {
 
 TEST(ReplayCameraTest, WhatCannotBeOpenedSaysWhy) {
     const TemporaryFolder folder;
-    std::ofstream(folder / "text.avi") << "this is no video";
+    folder.Write("text.avi", "this is no video");
     WriteSequence(folder, "gap%d.png", 0, 4, {16, 16});
     std::filesystem::remove(folder / "gap2.png");
     WriteSequence(folder, "late%d.png", 7, 2, {16, 16});

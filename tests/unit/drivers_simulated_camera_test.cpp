@@ -5,6 +5,7 @@
 
 #include "drivers/simulated_camera.hpp"
 #include "drivers/simulated_can_bus.hpp"
+#include "tests/support/simulated_pictures.hpp"
 
 namespace hitchview::drivers {
 namespace {
@@ -18,7 +19,7 @@ std::unique_ptr<SimulatedRig> TinyRig(int frames) {
     options.frames = frames;
     options.width_px = 64;
     options.height_px = 36;
-    return std::move(SimulatedRig::Create(options).value());
+    return tests::Rig(options);
 }
 
 TEST(SimulatedCameraTest, DeliversEveryFrameOfTheDriveThenTheEnd) {

@@ -6,12 +6,15 @@
 #include <string>
 
 #include "drivers/simulated_rig.hpp"
+#include "tests/support/simulated_pictures.hpp"
 
 namespace hitchview::drivers {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using tests::Rendered;
+using tests::Rig;
 using Image = std::vector<std::uint8_t>;
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -24,17 +27,6 @@ SimulationOptions Small() {
     options.noise_sigma = 0;
     options.gain_spread = 0;
     return options;
-}
-
-std::unique_ptr<SimulatedRig> Rig(const SimulationOptions& options) {
-    return std::move(SimulatedRig::Create(options).value());
-}
-
-Image Rendered(const SimulatedRig& rig, int camera, int frame) {
-    Image image(hal::FrameBytes(rig.format()));
-    Renderer::Workspace workspace;
-    rig.Render(camera, frame, workspace, image);
-    return image;
 }
 
 double MeanDifference(const Image& a, const Image& b) {

@@ -7,6 +7,7 @@
 
 #include "drivers/simulated_camera.hpp"
 #include "drivers/simulated_scenario.hpp"
+#include "tests/support/simulated_pictures.hpp"
 
 namespace hitchview::drivers {
 namespace {
@@ -19,7 +20,7 @@ std::unique_ptr<SimulatedRig> TinyRig(std::string_view name) {
     SimulationOptions options = FindScenario(name)->options;
     options.width_px = 64;
     options.height_px = 36;
-    return std::move(SimulatedRig::Create(options).value());
+    return tests::Rig(options);
 }
 
 double Yaw(const SimulatedRig& rig, int frame, Unit unit) {
@@ -108,7 +109,7 @@ TEST(SimulatedScenarioTest, ArticulationIsTheHitchAngleWithTheShakingOfBothUnits
     options.width_px = 64;
     options.height_px = 36;
     for (ShakeOptions& shake : options.shake.of) shake.scale = 0;
-    const auto still = std::move(SimulatedRig::Create(options).value());
+    const auto still = tests::Rig(options);
     const auto shaken = TinyRig("turn_left_60");
     double largest = 0;
     for (int i = 0; i < options.frames; i += 7) {

@@ -5,12 +5,15 @@
 
 #include "drivers/simulated_rig.hpp"
 #include "drivers/simulated_scenario.hpp"
+#include "tests/support/simulated_pictures.hpp"
 
 namespace hitchview::drivers {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using tests::Rendered;
+using tests::Rig;
 using Image = std::vector<std::uint8_t>;
 
 constexpr int kWidth_px = 160;
@@ -25,17 +28,6 @@ SimulationOptions SmallScenario(std::string_view name) {
     options.width_px = kWidth_px;
     options.height_px = kHeight_px;
     return options;
-}
-
-std::unique_ptr<SimulatedRig> Rig(const SimulationOptions& options) {
-    return std::move(SimulatedRig::Create(options).value());
-}
-
-Image Rendered(const SimulatedRig& rig, int camera, int frame) {
-    Image image(hal::FrameBytes(rig.format()));
-    Renderer::Workspace workspace;
-    rig.Render(camera, frame, workspace, image);
-    return image;
 }
 
 double MeanLuma(const Image& image) {

@@ -1,0 +1,188 @@
+#include "algo/panorama_block.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hitchview::algo {
+namespace {
+
+std::uint8_t Round(float value) {
+    return static_cast<std::uint8_t>(std::clamp(value, 0.0F, 255.0F) + 0.5F);
+}
+
+/// The grey of a block, or its colour at half the size: what differs between them.
+struct Luma {
+    static constexpr int kScale = 1;  // canvas pixels to a sample
+    static constexpr std::size_t kChannels = 1;
+    static constexpr std::size_t kFirstShift = 0;
+
+    static auto Read(const CameraSampler& camera, float x, float y) { return camera.Luma(x, y); }
+    static std::array<std::uint8_t*, kChannels> Planes(const PanoramaPlanes& out) {
+        return {out.y};
+    }
+    static int Stride_bytes(const PanoramaPlanes& out) { return out.y_stride_bytes; }
+    static std::uint8_t Hatched(int x, int y) {
+        constexpr std::uint8_t kDark = 40;
+        constexpr std::uint8_t kLight = 72;
+        return (((x + y) >> 3) & 1) != 0 ? kLight : kDark;
+    }
+    static std::uint8_t Empty(bool hatched, int x, int y) { return hatched ? Hatched(x, y) : 0; }
+};
+
+struct Chroma {
+    static constexpr int kScale = 2;
+    static constexpr std::size_t kChannels = 2;
+    static constexpr std::size_t kFirstShift = 1;
+
+    static auto Read(const CameraSampler& camera, float x, float y) { return camera.Chroma(x, y); }
+    static std::array<std::uint8_t*, kChannels> Planes(const PanoramaPlanes& out) {
+        return {out.u, out.v};
+    }
+    static int Stride_bytes(const PanoramaPlanes& out) { return out.chroma_stride_bytes; }
+    static std::uint8_t Empty(bool /*hatched*/, int /*x*/, int /*y*/) { return 128; }
+};
+
+/// Makes one kind of samples of a block, row by row.
+template <typename Kind>
+class BlockRows {
+ public:
+    BlockRows(const PanoramaBlock& block, bool hatched, const PanoramaPlanes& out)
+        : block_(block),
+          hatched_(hatched),
+          planes_(Kind::Planes(out)),
+          stride_bytes_(Kind::Stride_bytes(out)),
+          cols_(static_cast<std::size_t>(block.width / Kind::kScale)) {}
+
+    template <bool kShifted>
+    void Copy() const {
+        for (int row = 0; row < block_.height / Kind::kScale; ++row) CopyRow<kShifted>(row);
+    }
+    void Blend() const {
+        for (int row = 0; row < block_.height / Kind::kScale; ++row) BlendRow(row);
+    }
+
+ private:
+    static constexpr int kSide = ComposedMap::kBlock / Kind::kScale;
+    static constexpr std::size_t kChannels = Kind::kChannels;
+    using Row = std::array<float, kSide>;
+    using Rows = std::array<Row, kChannels>;
+
+    /// Values at the samples of a row, between the corners.
+    static void Interpolate(const Corners& corner, int row, Row& values) {
+        const float v = (static_cast<float>(row) + 0.5F) / kSide;
+        const float left = corner[0] + v * (corner[2] - corner[0]);
+        const float right = corner[1] + v * (corner[3] - corner[1]);
+        const float step = (right - left) / kSide;
+        for (int i = 0; i < kSide; ++i) {
+            values[static_cast<std::size_t>(i)] = left + step * (static_cast<float>(i) + 0.5F);
+        }
+    }
+    static void InterpolateShift(const BlockSource& source, int row, Rows& shifts) {
+        for (std::size_t k = 0; k < kChannels; ++k)
+            Interpolate(source.shift[Kind::kFirstShift + k], row, shifts[k]);
+    }
+
+    template <bool kShifted>
+    void CopyRow(int row) const {
+        const BlockSource& source = block_.sources[0];
+        Row xs;
+        Row ys;
+        Rows shifts;
+        Interpolate(source.x, row, xs);
+        Interpolate(source.y, row, ys);
+        if constexpr (kShifted) InterpolateShift(source, row, shifts);
+        const auto to = RowOf(row);
+        for (std::size_t i = 0; i < cols_; ++i) {
+            const auto values = Kind::Read(source.camera, xs[i], ys[i]);
+            for (std::size_t k = 0; k < kChannels; ++k) {
+                if constexpr (kShifted) {
+                    to[k][i] = Round(static_cast<float>(values[k]) + shifts[k][i]);
+                } else {
+                    to[k][i] = values[k];
+                }
+            }
+        }
+    }
+
+    void BlendRow(int row) const {
+        Rows sum{};
+        Row weight{};
+        for (const BlockSource& source : block_.sources) AddRow(source, row, sum, weight);
+        const auto to = RowOf(row);
+        for (std::size_t i = 0; i < cols_; ++i) {
+            for (std::size_t k = 0; k < kChannels; ++k)
+                to[k][i] = weight[i] > 0 ? Round(sum[k][i] / weight[i]) : Empty(row, i);
+        }
+    }
+
+    static void AddRow(const BlockSource& source, int row, Rows& sum, Row& weight) {
+        Row xs;
+        Row ys;
+        Row ws;
+        Rows shifts;
+        Interpolate(source.x, row, xs);
+        Interpolate(source.y, row, ys);
+        Interpolate(source.weight, row, ws);
+        InterpolateShift(source, row, shifts);
+        for (std::size_t i = 0; i < kSide; ++i) {
+            if (ws[i] <= 0 || !source.camera.Sees(xs[i], ys[i])) continue;
+            const auto values = Kind::Read(source.camera, xs[i], ys[i]);
+            for (std::size_t k = 0; k < kChannels; ++k)
+                sum[k][i] += ws[i] * (static_cast<float>(values[k]) + shifts[k][i]);
+            weight[i] += ws[i];
+        }
+    }
+
+    [[nodiscard]] std::array<std::uint8_t*, kChannels> RowOf(int row) const {
+        const auto at = static_cast<std::ptrdiff_t>(block_.y / Kind::kScale + row) * stride_bytes_ +
+                        block_.x / Kind::kScale;
+        std::array<std::uint8_t*, kChannels> to;
+        for (std::size_t k = 0; k < kChannels; ++k) to[k] = planes_[k] + at;
+        return to;
+    }
+    [[nodiscard]] std::uint8_t Empty(int row, std::size_t col) const {
+        return Kind::Empty(hatched_, block_.x + static_cast<int>(col), block_.y + row);
+    }
+
+    const PanoramaBlock& block_;
+    bool hatched_;
+    std::array<std::uint8_t*, kChannels> planes_;
+    int stride_bytes_;
+    std::size_t cols_;
+};
+
+template <typename Kind>
+void RenderSamples(const PanoramaBlock& block, NoData no_data, const PanoramaPlanes& out) {
+    const BlockRows<Kind> rows(block, no_data == NoData::kPattern && block.camera_missing, out);
+    if (!block.IsPlain()) {
+        rows.Blend();
+    } else if (block.sources[0].IsAsTaken()) {
+        rows.template Copy<false>();
+    } else {
+        rows.template Copy<true>();
+    }
+}
+
+}  // namespace
+
+bool BlockSource::SeesAll() const {
+    return camera.Sees(x[0], y[0]) && camera.Sees(x[1], y[1]) && camera.Sees(x[2], y[2]) &&
+           camera.Sees(x[3], y[3]);
+}
+
+bool BlockSource::IsAsTaken() const {
+    constexpr float kLeast = 0.25F;
+    for (const Corners& channel : shift) {
+        for (const float value : channel) {
+            if (std::abs(value) > kLeast) return false;
+        }
+    }
+    return true;
+}
+
+void PanoramaBlock::Render(NoData no_data, const PanoramaPlanes& out) const {
+    RenderSamples<Luma>(*this, no_data, out);
+    RenderSamples<Chroma>(*this, no_data, out);
+}
+
+}  // namespace hitchview::algo
