@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algo/seam_detail.hpp"
+
 namespace hitchview::algo {
 namespace {
 
@@ -63,6 +65,7 @@ void ComposedMap::BuildFor(const Composition& composition, const RigPictures* pi
     for (const Unit unit : kUnits) M_view_canvas_[unit] = composition.M_canvas_view[unit].inverse();
     runner.Run(rows_, [&](int row) { LocateRow(composition, row); });
     UpdateSeams(composition, pictures, runner);
+    FadeDetail(composition, runner);
     selected_.reset();
     runner.Run(rows_, [&](int row) { WeightRow(row); });
 }
@@ -70,18 +73,41 @@ void ComposedMap::BuildFor(const Composition& composition, const RigPictures* pi
 void ComposedMap::LocateRow(const Composition& composition, int row) {
     for (const Unit unit : kUnits) {
         if (!(*geometry_)[unit]) continue;
-        for (int col = 0; col < cols_; ++col) LocateCorner(composition, unit, row, col);
+        for (int col = 0; col < cols_; ++col) {
+            LocateCorner(composition, unit, row, col,
+                         WholeDiscrepancy(canvas_mesh_, composition, CornerPixel(row, col)));
+        }
     }
 }
 
-void ComposedMap::LocateCorner(const Composition& composition, Unit unit, int row, int col) {
+/// The seams were chosen with all of the detail everywhere.
+void ComposedMap::FadeDetail(const Composition& composition, TaskRunner& runner) {
+    shown_detail_ = composition.detail;
+    if (shown_detail_.empty() || !(*geometry_)[Unit::kTrailer]) return;
+    FadeFromSeams(canvas_mesh_, composition.discrepancy, composition.detail, seams_,
+                  {.kappa = composition.kappa}, shown_detail_);
+    runner.Run(rows_, [&](int row) { LocateFadedRow(composition, row); });
+}
+
+void ComposedMap::LocateFadedRow(const Composition& composition, int row) {
+    constexpr float kNoChange_px = 0.02F;
+    for (int col = 0; col < cols_; ++col) {
+        const Eigen::Vector2f& shown = shown_detail_.at(row, col);
+        if ((shown - composition.detail.at(row, col)).cwiseAbs().maxCoeff() < kNoChange_px)
+            continue;
+        const Vector2d e = Sample(canvas_mesh_, composition.discrepancy, CornerPixel(row, col)) +
+                           shown.cast<double>();
+        for (const Unit unit : kUnits) LocateCorner(composition, unit, row, col, e);
+    }
+}
+
+void ComposedMap::LocateCorner(const Composition& composition, Unit unit, int row, int col,
+                               const Vector2d& e) {
     const UnitGeometry& geometry = *(*geometry_)[unit];
     const std::size_t at = At(row, col);
     const Vector2d canvas_px = CornerPixel(row, col);
     const double moves = unit == Unit::kTractor ? -composition.kappa : 1 - composition.kappa;
-    const Vector2d met =
-        canvas_px + moves * Sample(canvas_mesh_, composition.discrepancy, canvas_px);
-    Vector3d ray = M_view_canvas_[unit] * canvas_.Ray(met);
+    Vector3d ray = M_view_canvas_[unit] * canvas_.Ray(canvas_px + moves * e);
     const Vector2d view_px = geometry.view().Pixel(ray);
     const Mesh view_mesh(geometry.view());
     ray = geometry.view().Ray(view_px - Sample(view_mesh, composition.view_offset[unit], view_px));
@@ -133,9 +159,9 @@ void ComposedMap::CompareUnits(const Composition& composition, const RigPictures
                 seam_cost_.ObserveOne(at);
                 continue;
             }
-            seam_cost_.ObserveBoth(at, PatchOf(pictures, Unit::kTractor, at),
-                                   PatchOf(pictures, Unit::kTrailer, at),
-                                   BendAt(composition, CornerPixel(row, col)));
+            seam_cost_.ObserveBoth(
+                at, PatchOf(pictures, Unit::kTractor, at), PatchOf(pictures, Unit::kTrailer, at),
+                {BendAt(composition, CornerPixel(row, col)), DoubtAt(composition, row, col)});
         }
     }
 }
@@ -151,14 +177,18 @@ GreyPatch ComposedMap::PatchOf(const RigPictures& pictures, Unit unit, std::size
                          best->corners[at].x, best->corners[at].y);
 }
 
+float ComposedMap::DoubtAt(const Composition& composition, int row, int col) const {
+    return composition.doubt_px.empty() ? 0 : composition.doubt_px.at(row, col);
+}
+
 float ComposedMap::BendAt(const Composition& composition, const Vector2d& pixel) const {
     const auto slope = [&](const Vector2d& step) {
-        return (Sample(canvas_mesh_, composition.discrepancy, pixel + step) -
-                Sample(canvas_mesh_, composition.discrepancy, pixel - step))
+        return (WholeDiscrepancy(canvas_mesh_, composition, pixel + step) -
+                WholeDiscrepancy(canvas_mesh_, composition, pixel - step))
                    .norm() /
                (2 * step.norm());
     };
-    constexpr double kStep = 2 * kBlock;
+    const double kStep = composition.detail.empty() ? 2 * kBlock : kBlock;
     return static_cast<float>(slope({kStep, 0}) + slope({0, kStep}));
 }
 

@@ -16,7 +16,7 @@ namespace hitchview::algo {
 /// interpolated in between. So every output pixel is resampled once.
 class ComposedMap {
  public:
-    static constexpr int kBlock = 8;  ///< canvas px, even
+    static constexpr int kBlock = CornerField::kSpacing_px;  ///< canvas px, even
 
     /// What one camera gives to one block corner.
     struct Corner {
@@ -53,6 +53,9 @@ class ComposedMap {
         return sources_[static_cast<std::size_t>(source)]
             .corners[static_cast<std::size_t>(row * cols_ + col)];
     }
+    /// The part of the composition's detail that was used: all of it at the seams, none far away.
+    /// Without corners if the composition has none.
+    [[nodiscard]] const CornerField& shown_detail() const { return shown_detail_; }
     /// Column of the seam at a row of corners, canvas px.
     [[nodiscard]] double seam_px(Overlap overlap, int row) const {
         return seams_.path(overlap).x_px(row);
@@ -72,16 +75,18 @@ class ComposedMap {
 
     void BuildFor(const Composition& composition, const RigPictures* pictures, TaskRunner& runner);
     void LocateRow(const Composition& composition, int row);
-    void LocateCorner(const Composition& composition, Unit unit, int row, int col);
+    void LocateCorner(const Composition& composition, Unit unit, int row, int col,
+                      const Eigen::Vector2d& e);
+    void FadeDetail(const Composition& composition, TaskRunner& runner);
+    void LocateFadedRow(const Composition& composition, int row);
     void UpdateSeams(const Composition& composition, const RigPictures* pictures,
                      TaskRunner& runner);
     void CompareUnits(const Composition& composition, const RigPictures& pictures, int row);
     [[nodiscard]] GreyPatch PatchOf(const RigPictures& pictures, Unit unit, std::size_t at) const;
+    [[nodiscard]] float DoubtAt(const Composition& composition, int row, int col) const;
     [[nodiscard]] float BendAt(const Composition& composition, const Eigen::Vector2d& pixel) const;
     void WeightRow(int row);
-    [[nodiscard]] Eigen::Vector2d CornerPixel(int row, int col) const {
-        return {col * double{kBlock} - 0.5, row * double{kBlock} - 0.5};
-    }
+    static Eigen::Vector2d CornerPixel(int row, int col) { return CornerField::Pixel(row, col); }
     [[nodiscard]] std::size_t At(int row, int col) const {
         return static_cast<std::size_t>(row * cols_ + col);
     }
@@ -95,6 +100,7 @@ class ComposedMap {
     PerUnit<int> first_source_;
     UnitSeams seams_;
     SeamCost seam_cost_;
+    CornerField shown_detail_;
     UnitSeams::Coverage covered_;
     PerUnit<CameraMask> present_;
     PerUnit<Eigen::Matrix3d> M_view_canvas_;

@@ -5,10 +5,17 @@ namespace hitchview::algo {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+Vector2d WholeDiscrepancy(const Mesh& mesh, const Composition& composition,
+                          const Vector2d& canvas_px) {
+    Vector2d e = Sample(mesh, composition.discrepancy, canvas_px);
+    if (!composition.detail.empty()) e += composition.detail.Sample(canvas_px).cast<double>();
+    return e;
+}
+
 Vector2d ToCanvas(const Projection& canvas, const Projection& view, const Composition& composition,
                   Unit unit, const Vector3d& view_ray) {
     const Vector2d view_px = view.Pixel(view_ray);
-    constexpr int kSteps = 6;  // of the fixed points of what is read backwards
+    constexpr int kSteps = 20;  // of the fixed points of what is read backwards
     const Mesh view_mesh(view);
     Vector2d moved = view_px;
     for (int i = 0; i < kSteps; ++i)
@@ -18,7 +25,7 @@ Vector2d ToCanvas(const Projection& canvas, const Projection& view, const Compos
     const Mesh mesh(canvas);
     Vector2d shown = placed;
     for (int i = 0; i < kSteps; ++i)
-        shown = placed - moves * Sample(mesh, composition.discrepancy, shown);
+        shown = placed - moves * WholeDiscrepancy(mesh, composition, shown);
     return shown;
 }
 

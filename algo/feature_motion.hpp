@@ -22,8 +22,16 @@ struct InterFeature {
     Eigen::Vector2d trailer_px;
 };
 
-inline constexpr std::size_t kMaxInterFeatures = 384;
+inline constexpr std::size_t kMaxInterFeatures = 768;
 /// Inter motion of one overlap.
 using InterFeatures = FixedVector<InterFeature, kMaxInterFeatures>;
+
+/// The same of the dense parallax; `weight` 0..1: how well it is known.
+struct ParallaxSample {
+    InterFeature pair;
+    float weight;
+};
+inline constexpr std::size_t kMaxParallaxSamples = 16384;
+using ParallaxSamples = FixedVector<ParallaxSample, kMaxParallaxSamples>;
 
 }  // namespace hitchview::algo

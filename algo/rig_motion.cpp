@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "algo/feature_mask.hpp"
-#include "algo/parallax_search.hpp"
+#include "algo/guidance.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -19,63 +19,11 @@ constexpr int kFewestCandidates = 12;
 constexpr int kLockedInliers = 12;
 constexpr int kCoastFrames = 60;
 constexpr float kLatticePitch_px = 9;  // of the analysis view
-/// Parallax between the units' cameras, two metres apart, of what is farther than the alignment
-/// surface and of what is 8 m away.
-constexpr float kFarthest_rad = -0.018F;
-constexpr float kNearest_rad = 0.22F;
-constexpr float kLatticeCorrelation = 0.8F;
-constexpr float kLatticeTravel_px = 2;  // a search along the row ends this near
+/// Nodes of the parallax grid from one pair for the placement to the next.
+constexpr int kPlacementStep = 4;
+constexpr float kPlacementWeight = 0.5F;  // of a match's texture
 
 }  // namespace
-
-/// Expects a feature where the placement and the guessed field put it.
-class RigMotionEstimator::Guidance final : public Expectation {
- public:
-    Guidance(const RigMotionEstimator& owner, const MatchGuess& guess, Overlap overlap,
-             int& candidates, bool with_field = true)
-        : owner_(owner),
-          mesh_(owner.canvas_),
-          guess_(guess),
-          overlap_(overlap),
-          candidates_(candidates),
-          with_field_(with_field),
-          M_canvas_view_{{guess.M_canvas_tractor, guess.M_shown_placed * guess.M_canvas_tractor *
-                                                      owner.placement_->M_tractor_trailer()}} {}
-
-    bool Expect(Unit unit, const Vector2f& pixel, Vector2f& other) const override {
-        const Vector2d px = owner_.analysis_[unit]->view().ToView(pixel);
-        const Vector3d ray = owner_.view(unit).Ray(px);
-        const Matrix3d& M_canvas_unit = M_canvas_view_[unit];
-        const Matrix3d& M_canvas_other = M_canvas_view_[Other(unit)];
-        const Vector2d canvas_px = owner_.canvas_.Pixel(M_canvas_unit * ray);
-        if (!InOverlap(canvas_px)) return false;
-        const Vector2d e =
-            with_field_ ? Sample(mesh_, guess_.discrepancy, canvas_px) : Vector2d(Vector2d::Zero());
-        const Vector2d there =
-            unit == Unit::kTractor ? Vector2d(canvas_px + e) : Vector2d(canvas_px - e);
-        const Unit opposite = Other(unit);
-        const Vector2d expected =
-            owner_.view(opposite).Pixel(M_canvas_other.inverse() * owner_.canvas_.Ray(there));
-        other = owner_.analysis_[opposite]->view().ToAnalysis(expected);
-        if (!Allows(owner_.analysis_[opposite]->view().mask(), other)) return false;
-        ++candidates_;
-        return true;
-    }
-
- private:
-    bool InOverlap(const Vector2d& canvas_px) const {
-        if (!owner_.canvas_.IsRing()) return overlap_ == Overlap::kRight;
-        return (canvas_px.x() < owner_.canvas_.Centre().x()) == (overlap_ == Overlap::kLeft);
-    }
-
-    const RigMotionEstimator& owner_;
-    Mesh mesh_;
-    const MatchGuess& guess_;
-    Overlap overlap_;
-    int& candidates_;
-    bool with_field_;
-    PerUnit<Matrix3d> M_canvas_view_;
-};
 
 RigMotionEstimator::RigMotionEstimator(const Projection& canvas,
                                        const PerUnit<std::optional<UnitGeometry>>& geometry,
@@ -100,6 +48,11 @@ RigMotionEstimator::RigMotionEstimator(const Projection& canvas,
                                                         PlacementOptions(canvas, a.scale()));
         LayLattice();
         if (canvas.IsRing()) {
+            for (const Overlap overlap : kOverlaps) {
+                parallax_[overlap] = std::make_unique<OverlapParallax>(
+                    PerUnit<UnitGeometry>{{*geometry[Unit::kTractor], *geometry[Unit::kTrailer]}},
+                    PerUnit<const SemiSurroundView*>{{&a, &b}}, overlap, OverlapParallaxOptions{});
+            }
             articulation_ = std::make_unique<ArticulationEstimator>(
                 *geometry[Unit::kTractor], *geometry[Unit::kTrailer], ArticulationOptions{});
         }
@@ -145,13 +98,14 @@ void RigMotionEstimator::MatchUnits(const MatchGuess& guess, TaskRunner& runner,
     for (const Overlap overlap : kOverlaps) {
         motion.inter[overlap].clear();
         motion.dense[overlap].clear();
+        motion.parallax[overlap].clear();
     }
     const bool lost = !placement_->acquired() || LongUnmatched();
     if (lost && matched_ % kAcquireEvery == 0) {
         AcquireTrailer(motion);
-    } else if (placement_->acquired()) {
-        Guide(guess, runner, motion);
+        for (const Overlap overlap : kOverlaps) motion.inter[overlap].clear();
     }
+    if (placement_->acquired()) Guide(guess, runner, motion);
     UpdateSeams(motion);
     motion.M_tractor_trailer = placement_->M_tractor_trailer();
     motion.placed = placement_->acquired();
@@ -175,59 +129,51 @@ void RigMotionEstimator::Guide(const MatchGuess& guess, TaskRunner& runner, RigM
 void RigMotionEstimator::GuideOverlap(const MatchGuess& guess, Overlap overlap, RigMotion& motion) {
     PerUnit<MatchView> views{
         {analysis_[Unit::kTractor]->match_view(), analysis_[Unit::kTrailer]->match_view()}};
+    const PerUnit<Guidance::Side> sides{
+        {Guidance::Side{&analysis_[Unit::kTractor]->view(), tractor_view_, guess.M_canvas_tractor},
+         Guidance::Side{
+             &analysis_[Unit::kTrailer]->view(), *trailer_view_,
+             guess.M_shown_placed * guess.M_canvas_tractor * placement_->M_tractor_trailer()}}};
     ViewPairs& pairs = view_pairs_[overlap];
     int& candidates = motion.candidates[overlap];
     candidates = 0;
-    matcher_->Guide(views, Guidance{*this, guess, overlap, candidates}, pairs);
+    matcher_->Guide(views, Guidance(canvas_, sides, guess.discrepancy, overlap, candidates), pairs);
     ToViews(pairs, motion.inter[overlap]);
-    int asked = 0;
     if (canvas_.IsRing()) {
-        SearchLattice(views, Guidance{*this, guess, overlap, asked},
-                      Guidance{*this, guess, overlap, asked, false}, overlap, pairs);
-    } else {
-        views[Unit::kTractor].features = lattice_;
-        views[Unit::kTrailer].features = {};
-        matcher_->Guide(views, Guidance{*this, guess, overlap, asked}, pairs);
+        MatchDensely(views, overlap, motion);
+        return;
     }
+    int asked = 0;
+    views[Unit::kTractor].features = lattice_;
+    views[Unit::kTrailer].features = {};
+    matcher_->Guide(views, Guidance(canvas_, sides, guess.discrepancy, overlap, asked), pairs);
     ToViews(pairs, motion.dense[overlap]);
 }
 
-/// The trailer's cameras stand behind the tractor's, so what is nearer than the alignment surface
-/// lies farther forward in the trailer's view, which looks back: on the left that is to the left.
-void RigMotionEstimator::SearchLattice(const PerUnit<MatchView>& views, const Guidance& guidance,
-                                       const Guidance& surface, Overlap overlap,
-                                       ViewPairs& pairs) const {
-    pairs.clear();
-    const float sign = overlap == Overlap::kLeft ? -1.0F : 1.0F;
-    const auto focal_px =
-        static_cast<float>(analysis_[Unit::kTractor]->view().scale() * tractor_view_.focal_px);
-    const ParallaxRange range{sign * kFarthest_rad * focal_px, sign * kNearest_rad * focal_px};
-    PatchAlignmentOptions alignment;
-    alignment.max_travel_px = kLatticeTravel_px;
-    const MatchView& here = views[Unit::kTractor];
-    const MatchView& there = views[Unit::kTrailer];
-    for (const Vector2f& at : lattice_) {
-        Vector2f base;
-        Vector2f expected;
-        if (!surface.Expect(Unit::kTractor, at, base)) continue;
-        if (!guidance.Expect(Unit::kTractor, at, expected)) expected = base;
-        const auto found = SearchAlongRow(here.pyramid->level(0), there.pyramid->level(0), at, base,
-                                          expected, range);
-        if (!found) continue;
-        const auto match = AlignPatch(*here.pyramid, *there.pyramid, at, *found, 0, alignment);
-        if (!match || match->correlation < kLatticeCorrelation ||
-            !Allows(*there.mask, match->position_px)) {
-            continue;
+void RigMotionEstimator::MatchDensely(const PerUnit<MatchView>& views, Overlap overlap,
+                                      RigMotion& motion) {
+    OverlapParallax& parallax = *parallax_[overlap];
+    parallax.Match(views, placement_->M_tractor_trailer());
+    for (int row = 0; row < parallax.rows(); ++row) {
+        for (int col = 0; col < parallax.cols(); ++col) {
+            const auto& match = parallax.At(row, col);
+            if (!match) continue;
+            const InterFeature pair = ToViews(match->pair);
+            motion.parallax[overlap].push_back({pair, match->weight});
+            const bool chosen = row % kPlacementStep == 0 && col % kPlacementStep == 0;
+            if (chosen && match->clear && match->weight > kPlacementWeight)
+                motion.dense[overlap].push_back(pair);
         }
-        if (!pairs.push_back({at, match->position_px})) return;
     }
 }
 
+InterFeature RigMotionEstimator::ToViews(const ViewPair& pair) const {
+    return {analysis_[Unit::kTractor]->view().ToView(pair.tractor_px),
+            analysis_[Unit::kTrailer]->view().ToView(pair.trailer_px)};
+}
+
 void RigMotionEstimator::ToViews(const ViewPairs& pairs, InterFeatures& features) const {
-    for (const ViewPair& pair : pairs) {
-        features.push_back({analysis_[Unit::kTractor]->view().ToView(pair.tractor_px),
-                            analysis_[Unit::kTrailer]->view().ToView(pair.trailer_px)});
-    }
+    for (const ViewPair& pair : pairs) features.push_back(ToViews(pair));
 }
 
 /// The field needs to be known where no corners are, too.

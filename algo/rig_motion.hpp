@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "algo/articulation.hpp"
+#include "algo/overlap_parallax.hpp"
 #include "algo/task_runner.hpp"
 #include "algo/trailer_placement.hpp"
 #include "algo/unified_options.hpp"
@@ -15,8 +16,9 @@ namespace hitchview::algo {
 /// What one frame set tells of the motion within the units and between them.
 struct RigMotion {
     PerUnit<IntraMotion> intra;
-    PerOverlap<InterFeatures> inter;  ///< px of the views
-    PerOverlap<InterFeatures> dense;  ///< likewise, of lattice points: for the stitching field
+    PerOverlap<InterFeatures> inter;       ///< px of the views
+    PerOverlap<InterFeatures> dense;       ///< likewise, spread evenly: for the stitching field
+    PerOverlap<ParallaxSamples> parallax;  ///< ring only: as dense as it gets, px of the views
     Eigen::Matrix3d M_tractor_trailer = Eigen::Matrix3d::Identity();
     bool placed = false;  ///< false: M_tractor_trailer means nothing
     PerOverlap<SeamState> seams{{SeamState::kNoOverlap, SeamState::kNoOverlap}};
@@ -60,16 +62,14 @@ class RigMotionEstimator {
     }
 
  private:
-    class Guidance;
-
     void Analyse(const RigFrames& frames, TaskRunner& runner, RigMotion& motion);
     void MatchUnits(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion);
     bool AcquireTrailer(RigMotion& motion);
     [[nodiscard]] bool LongUnmatched() const;
     void Guide(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion);
     void GuideOverlap(const MatchGuess& guess, Overlap overlap, RigMotion& motion);
-    void SearchLattice(const PerUnit<MatchView>& views, const Guidance& guidance,
-                       const Guidance& surface, Overlap overlap, ViewPairs& pairs) const;
+    void MatchDensely(const PerUnit<MatchView>& views, Overlap overlap, RigMotion& motion);
+    [[nodiscard]] InterFeature ToViews(const ViewPair& pair) const;
     void LayLattice();
     void ToViews(const ViewPairs& pairs, InterFeatures& features) const;
     void UpdateSeams(RigMotion& motion);
@@ -84,7 +84,8 @@ class RigMotionEstimator {
     PerUnit<std::unique_ptr<UnitAnalysis>> analysis_;
     std::unique_ptr<ClassicalMatcher> matcher_;
     std::unique_ptr<TrailerPlacement> placement_;
-    std::unique_ptr<ArticulationEstimator> articulation_;  // ring only
+    PerOverlap<std::unique_ptr<OverlapParallax>> parallax_;  // ring only
+    std::unique_ptr<ArticulationEstimator> articulation_;    // ring only
     PerOverlap<int> frames_unmatched_;
     std::int64_t matched_ = 0;  // frame sets
     PerOverlap<ViewPairs> view_pairs_;

@@ -37,7 +37,7 @@ SeamCost::SeamCost(int corners, const SeamCostOptions& options)
       cost_(static_cast<std::size_t>(corners), options.unseen) {}
 
 void SeamCost::ObserveBoth(std::size_t corner, const GreyPatch& tractor, const GreyPatch& trailer,
-                           float bend) {
+                           const FieldRisk& risk) {
     History& history = history_[corner];
     const float difference = tractor.Difference(trailer);
     if (!history.known) history = {difference, difference, 0, true};
@@ -45,8 +45,8 @@ void SeamCost::ObserveBoth(std::size_t corner, const GreyPatch& tractor, const G
         std::max(std::abs(difference - history.newest), options_.motion_decay * history.motion);
     history.difference += options_.follow * (difference - history.difference);
     history.newest = difference;
-    cost_[corner] =
-        history.difference + options_.motion_weight * history.motion + options_.bend_weight * bend;
+    cost_[corner] = history.difference + options_.motion_weight * history.motion +
+                    options_.bend_weight * risk.bend + options_.doubt_weight * risk.doubt_px;
 }
 
 void SeamCost::ObserveOne(std::size_t corner) {

@@ -11,7 +11,7 @@ struct CanvasPair {
     Eigen::Vector2d tractor_px;
     Eigen::Vector2d trailer_px;
 };
-inline constexpr std::size_t kMaxCanvasPairs = 1024;
+inline constexpr std::size_t kMaxCanvasPairs = 2048;
 using CanvasPairs = FixedVector<CanvasPair, kMaxCanvasPairs>;
 
 /// e of one pair, at the point where both views meet; see StitchingMotionField.

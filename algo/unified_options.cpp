@@ -64,7 +64,7 @@ UnitAnalysisOptions AnalysisOptions(const Projection& view) {
 
 double MaxParallax_px(const Projection& canvas) {
     constexpr double kPlane_px = 24;
-    constexpr double kRing_rad = 0.28;  // two metres between the cameras, 7 m to the thing
+    constexpr double kRing_rad = 0.65;  // two metres between the cameras, 3 m to the thing
     return canvas.IsRing() ? kRing_rad * canvas.focal_px : kPlane_px;
 }
 
@@ -72,6 +72,22 @@ StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double ka
     StitchingMotionFieldOptions options;
     options.kappa = kappa;
     options.fit.fade_px = 0.055 * canvas.width_px;
+    options.max_stretch = kMaxStretch / std::max(kappa, 1 - kappa);
+    if (canvas.IsRing()) {  // samples are dense, and the ground tilts with each unit
+        options.fit.memory = 0.02;
+        options.fit.outlier_px = 3;
+    }
+    return options;
+}
+
+SeamOptions SeamOptionsOf(const Projection& canvas) {
+    SeamOptions options;
+    if (canvas.IsRing()) {  // things pass by, and where the units agree nobody sees a seam move
+        options.path.keep_cost = 1;
+        options.path.least_win = 0.05F;
+        options.path.least_gain = 0.3F;
+        options.path.glide_px = 16;
+    }
     return options;
 }
 

@@ -8,6 +8,7 @@
 #include "algo/stitching_motion_field.hpp"
 #include "algo/trailer_placement.hpp"
 #include "algo/unit_analysis.hpp"
+#include "algo/unit_seams.hpp"
 #include "algo/unit_smoother.hpp"
 
 namespace hitchview::algo {
@@ -34,6 +35,7 @@ double MaxParallax_px(const Projection& canvas);
 /// The stages' options for pictures of this kind and size: one place for what was tuned.
 UnitAnalysisOptions AnalysisOptions(const Projection& view);
 StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double kappa);
+SeamOptions SeamOptionsOf(const Projection& canvas);
 /// Of single frames of a recording.
 OverlapDiscrepancyOptions DiscrepancyOptions(const Projection& canvas, double kappa);
 TrailerPlacementOptions PlacementOptions(const Projection& canvas, double analysis_scale);

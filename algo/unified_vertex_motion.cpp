@@ -37,6 +37,9 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
             std::make_unique<UnitSmoother>(MakeUnitSmoother(canvas, view(unit), options));
     }
     if (has_trailer()) {
+        if (canvas.IsRing())
+            detail_ =
+                std::make_unique<DetailField>(canvas, DetailFieldOptions{.kappa = options.kappa});
         hitch_smoother_ = std::make_unique<PathSmoother>(HitchSmootherOptions(tractor_view_));
     }
     LayOut();
@@ -228,6 +231,22 @@ void UnifiedVertexMotion::UpdateStitching(const RigMotion& record, const Matrix3
         stitching_.Update(canvas_pairs_);
     }
     stitching_.Extend();
+    if (detail_) UpdateDetail(record);
+}
+
+void UnifiedVertexMotion::UpdateDetail(const RigMotion& record) {
+    detail_->Clear();
+    for (const Overlap overlap : kOverlaps) {
+        for (const ParallaxSample& sample : record.parallax[overlap]) {
+            const CanvasPair pair{OnCanvas(Unit::kTractor, sample.pair.tractor_px),
+                                  OnCanvas(Unit::kTrailer, sample.pair.trailer_px)};
+            if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < max_parallax_px_)
+                detail_->Add(pair, sample.weight);
+        }
+    }
+    detail_->Fit(stitching_.discrepancy());
+    composition_.detail = detail_->detail();
+    composition_.doubt_px = detail_->doubt_px();
 }
 
 }  // namespace hitchview::algo

@@ -6,6 +6,7 @@
 
 #include "algo/canvas_layout.hpp"
 #include "algo/composition.hpp"
+#include "algo/detail_field.hpp"
 #include "algo/path_smoother.hpp"
 #include "algo/rig_motion.hpp"
 #include "algo/stitching_motion_field.hpp"
@@ -43,6 +44,7 @@ class UnifiedVertexMotion final : public VertexMotion {
     void Stabilise(std::int64_t index, Unit unit);
     void PlaceTrailer(const RigMotion& record);
     void UpdateViewOffset(const RigMotion& record, Unit unit);
+    void UpdateDetail(const RigMotion& record);
     void UpdateStitching(const RigMotion& record, const Eigen::Matrix3d& M_canvas_early);
     void TakePairs(const InterFeatures& features);
     void Compose(const RigMotion& record);
@@ -66,6 +68,7 @@ class UnifiedVertexMotion final : public VertexMotion {
     MatchGuess guess_;
     double max_parallax_px_;
     StitchingMotionField stitching_;
+    std::unique_ptr<DetailField> detail_;  // ring with a trailer
     PerUnit<std::unique_ptr<UnitSmoother>> smoother_;
     std::unique_ptr<PathSmoother> hitch_smoother_;
 

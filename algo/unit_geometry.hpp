@@ -83,6 +83,17 @@ class UnitGeometry {
     [[nodiscard]] std::optional<SightLine> SightAlong(const Eigen::Vector3d& ray) const;
     /// How `camera` sees what is shown along `ray` of a ring's view.
     [[nodiscard]] SightLine SightOf(int camera, const Eigen::Vector3d& ray) const;
+    /// How far the alignment surface is from a camera at `origin_m` where `ray` of a ring's view
+    /// shows it.
+    [[nodiscard]] double SurfaceDistance_m(const Eigen::Vector3d& origin_m,
+                                           const Eigen::Vector3d& ray) const {
+        return (surface_.Hit(ray) - origin_m).norm();
+    }
+    /// Ray of a ring's view in which a camera at `origin_m` shows what lies in `direction`.
+    [[nodiscard]] Eigen::Vector3d RayToward(const Eigen::Vector3d& origin_m,
+                                            const Eigen::Vector3d& direction) const {
+        return surface_.RayOf(origin_m, direction);
+    }
 
  private:
     struct MountedCamera {

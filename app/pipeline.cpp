@@ -1,5 +1,7 @@
 #include "app/pipeline.hpp"
 
+#include "algo/unified_options.hpp"
+
 namespace hitchview::app {
 namespace {
 
@@ -37,7 +39,7 @@ Pipeline::Pipeline(const RigGeometry& rig, algo::VertexMotion& motion, algo::Tas
     : rig_(rig),
       runner_(runner),
       motion_(motion),
-      map_(rig_.canvas, rig_.units, algo::SeamOptions{}),
+      map_(rig_.canvas, rig_.units, algo::SeamOptionsOf(rig_.canvas)),
       gains_(exposure_.gains()),
       bands_(map_),
       format_(CanvasFormat(rig.canvas)),

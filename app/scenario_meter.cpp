@@ -57,8 +57,10 @@ ScenarioMeter::ScenarioMeter(const drivers::SimulatedRig& rig, const RigGeometry
 
 void ScenarioMeter::Observe(const ShownPanorama& shown, const algo::ComposedMap& map) {
     const int frame = static_cast<int>(shown.picture.header.sequence);
-    path_.Observe(frame, *shown.composition);
-    if (frame % kOverlapEvery == 0) overlap_.Observe(shown, map);
+    algo::Composition used = *shown.composition;
+    used.detail = map.shown_detail();
+    path_.Observe(frame, used);
+    if (frame % kOverlapEvery == 0) overlap_.Observe(shown, used, map);
     ObserveWarp(map);
     ObserveCoverage(shown, map);
     for (const Overlap overlap : algo::kOverlaps)

@@ -103,16 +103,17 @@ json Ratio(const json& estimated, const json& oracle) {
 
 }  // namespace
 
-void TruthOverlap::Observe(const ShownPanorama& shown, const ComposedMap& map) {
+void TruthOverlap::Observe(const ShownPanorama& shown, const algo::Composition& used,
+                           const ComposedMap& map) {
     const std::size_t first = samples_.size();
     for (int row = 0; row <= map.block_rows(); row += kStep) {
-        for (int col = 0; col < map.block_cols(); ++col) ObserveCorner(shown, map, row, col);
+        for (int col = 0; col < map.block_cols(); ++col) ObserveCorner(shown, used, map, row, col);
     }
     AskOracle(first);
 }
 
-void TruthOverlap::ObserveCorner(const ShownPanorama& shown, const ComposedMap& map, int row,
-                                 int col) {
+void TruthOverlap::ObserveCorner(const ShownPanorama& shown, const algo::Composition& used,
+                                 const ComposedMap& map, int row, int col) {
     const RigGeometry& geometry = sight_.geometry();
     const bool in_strip = ShareOf(map, Unit::kTractor, row, col) > kLeastShare &&
                           ShareOf(map, Unit::kTrailer, row, col) > kLeastShare;
@@ -128,8 +129,8 @@ void TruthOverlap::ObserveCorner(const ShownPanorama& shown, const ComposedMap& 
     const auto point =
         sight_.WorldPointAt(Unit::kTractor, camera, frame, Vector2d(corner.x, corner.y));
     if (!point) return;
-    const Sighting other = sight_.Find(Unit::kTrailer, frame, point->p_world_m,
-                                       TruthSight::Occlusion::kTested, *shown.composition);
+    const Sighting other =
+        sight_.Find(Unit::kTrailer, frame, point->p_world_m, TruthSight::Occlusion::kTested, used);
     if (other.camera < 0) return;
     const Vector2d canvas_px{col * double{ComposedMap::kBlock} - 0.5,
                              row * double{ComposedMap::kBlock} - 0.5};

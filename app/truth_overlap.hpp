@@ -28,15 +28,18 @@ class TruthOverlap {
  public:
     explicit TruthOverlap(TruthSight& sight) : sight_(sight) {}
 
-    /// Rays into the scene are dear: call it for some of the frames.
-    void Observe(const ShownPanorama& shown, const algo::ComposedMap& map);
+    /// Rays into the scene are dear: call it for some of the frames. `used`: the composition as
+    /// `map` shows it.
+    void Observe(const ShownPanorama& shown, const algo::Composition& used,
+                 const algo::ComposedMap& map);
 
     [[nodiscard]] const std::vector<OverlapSample>& samples() const { return samples_; }
     /// Mean misalignment in the strip of points beyond 10 m in the newest frame; 0 without points.
     [[nodiscard]] double NewestStripError_px(algo::Overlap overlap) const;
 
  private:
-    void ObserveCorner(const ShownPanorama& shown, const algo::ComposedMap& map, int row, int col);
+    void ObserveCorner(const ShownPanorama& shown, const algo::Composition& used,
+                       const algo::ComposedMap& map, int row, int col);
     void AskOracle(std::size_t first);
 
     TruthSight& sight_;

@@ -10,12 +10,14 @@ namespace {
 using algo::Unit;
 using Eigen::Vector2d;
 
-/// Continues an unrolled path to where the picture shows the point now.
-void Append(const algo::Projection& picture, const Vector2d& shown_px,
+/// Continues an unrolled path to where the picture shows the point now, straight over `hidden`
+/// frames.
+void Append(const algo::Projection& picture, const Vector2d& shown_px, int hidden,
             std::vector<Vector2d>& path) {
     const Vector2d last = path.empty() ? shown_px : path.back();
     const Vector2d last_in_picture = path.empty() ? shown_px : picture.Pixel(picture.Ray(last));
-    path.push_back(last + picture.Difference(shown_px, last_in_picture));
+    const Vector2d way = picture.Difference(shown_px, last_in_picture);
+    for (int i = 1; i <= hidden + 1; ++i) path.push_back(last + i * way / (hidden + 1.0));
 }
 
 double PowerOf(const std::vector<Vector2d>& path, double rate_hz) {
@@ -52,11 +54,16 @@ void TruthPath::Observe(int frame, const algo::Composition& composition) {
         for (std::size_t i = 0; i < kLandmarks; ++i) {
             const Sighting sighting = Look(unit, i, frame, composition);
             Segment& segment = open_[unit][i];
-            if (sighting.camera != segment.camera) {
+            if (sighting.camera != segment.camera || segment.hidden > kLongestHidden) {
                 closed_[unit].push_back(std::exchange(segment, {}));
                 segment.camera = sighting.camera;
             }
-            if (sighting.camera >= 0) Extend(sighting, view, segment);
+            if (sighting.camera < 0) continue;
+            if (sight_.IsHidden(unit, sighting.camera, frame, landmarks_[i])) {
+                if (!segment.view_px.empty()) ++segment.hidden;
+            } else {
+                Extend(sighting, view, segment);
+            }
         }
     }
 }
@@ -76,8 +83,9 @@ Sighting TruthPath::Look(Unit unit, std::size_t landmark, int frame,
 
 void TruthPath::Extend(const Sighting& sighting, const algo::Projection& view,
                        Segment& segment) const {
-    Append(view, sighting.view_px, segment.view_px);
-    Append(sight_.geometry().canvas, sighting.canvas_px, segment.canvas_px);
+    Append(view, sighting.view_px, segment.hidden, segment.view_px);
+    Append(sight_.geometry().canvas, sighting.canvas_px, segment.hidden, segment.canvas_px);
+    segment.hidden = 0;
 }
 
 void TruthPath::AddTo(Shake& shake, const Segment& segment) const {

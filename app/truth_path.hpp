@@ -36,11 +36,14 @@ class TruthPath {
 
     /// Path of a landmark while one camera shows it: another one sees from another place, and that
     /// step is parallax of the rig, not shake.
+    /// While something hides it for a moment nobody sees where it is shown: both paths go straight.
     struct Segment {
         int camera = -1;
         std::vector<Eigen::Vector2d> view_px;  ///< unrolled: no step where a ring closes
         std::vector<Eigen::Vector2d> canvas_px;
+        int hidden = 0;  ///< frames since it was seen last
     };
+    static constexpr int kLongestHidden = 15;  // frames
 
     [[nodiscard]] Sighting Look(algo::Unit unit, std::size_t landmark, int frame,
                                 const algo::Composition& composition) const;

@@ -42,11 +42,16 @@ Sighting TruthSight::Find(Unit unit, int frame, const Vector3d& p_world_m, Occlu
         const Sighting sighting = Locate(unit, i, frame, p_world_m);
         if (sighting.share > best.share) best = sighting;
     }
-    const bool hidden = best.camera >= 0 && occlusion == Occlusion::kTested &&
-                        !OutlookOf(RigCamera(unit, best.camera), frame).IsFreeTo(p_world_m);
-    if (hidden) return {};
+    if (best.camera >= 0 && occlusion == Occlusion::kTested &&
+        IsHidden(unit, best.camera, frame, p_world_m)) {
+        return {};
+    }
     Place(unit, composition, best);
     return best;
+}
+
+bool TruthSight::IsHidden(Unit unit, int camera, int frame, const Vector3d& p_world_m) {
+    return !OutlookOf(RigCamera(unit, camera), frame).IsFreeTo(p_world_m);
 }
 
 const drivers::Outlook& TruthSight::OutlookOf(int rig_camera, int frame) {

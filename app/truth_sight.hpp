@@ -39,6 +39,10 @@ class TruthSight {
                                    const Eigen::Vector3d& p_world_m,
                                    const algo::Composition& composition) const;
 
+    /// Something stands in front of the point, for this camera.
+    [[nodiscard]] bool IsHidden(algo::Unit unit, int camera, int frame,
+                                const Eigen::Vector3d& p_world_m);
+
     /// Index in the simulated rig of the unit's camera `camera`.
     [[nodiscard]] int RigCamera(algo::Unit unit, int camera) const;
     [[nodiscard]] const drivers::SimulatedRig& rig() const { return rig_; }

@@ -152,8 +152,8 @@ GreyPatch Patch(float grey) {
 
 TEST(SeamCostTest, DifferentPicturesCostMoreThanEqualOnesAndUnseenOnesMore) {
     SeamCost cost(3, {});
-    cost.ObserveBoth(0, Patch(90), Patch(90), 0);
-    cost.ObserveBoth(1, Patch(90), Patch(98), 0);
+    cost.ObserveBoth(0, Patch(90), Patch(90), {});
+    cost.ObserveBoth(1, Patch(90), Patch(98), {});
     cost.ObserveOne(2);
     EXPECT_EQ(cost.cost()[0], 0);
     EXPECT_NEAR(cost.cost()[1], 8, 1e-5);
@@ -170,20 +170,27 @@ TEST(SeamCostTest, AnEdgeThatLiesElsewhereCostsThoughTheMeanIsEqual) {
 TEST(SeamCostTest, WhatMovesCostsMoreThanWhatStandsStillAndStaysSoForAWhile) {
     SeamCost cost(2, {});
     for (int frame = 0; frame < 20; ++frame) {
-        cost.ObserveBoth(0, Patch(100), Patch(110), 0);
-        cost.ObserveBoth(1, Patch(100), Patch(frame % 2 == 0 ? 105 : 115), 0);
+        cost.ObserveBoth(0, Patch(100), Patch(110), {});
+        cost.ObserveBoth(1, Patch(100), Patch(frame % 2 == 0 ? 105 : 115), {});
     }
     EXPECT_GT(cost.cost()[1], cost.cost()[0] + 10);
-    for (int frame = 0; frame < 3; ++frame) cost.ObserveBoth(1, Patch(100), Patch(110), 0);
+    for (int frame = 0; frame < 3; ++frame) cost.ObserveBoth(1, Patch(100), Patch(110), {});
     EXPECT_GT(cost.cost()[1], cost.cost()[0] + 5);
-    for (int frame = 0; frame < 90; ++frame) cost.ObserveBoth(1, Patch(100), Patch(110), 0);
+    for (int frame = 0; frame < 90; ++frame) cost.ObserveBoth(1, Patch(100), Patch(110), {});
     EXPECT_NEAR(cost.cost()[1], cost.cost()[0], 0.1);
 }
 
 TEST(SeamCostTest, AFieldThatBendsCosts) {
     SeamCost cost(2, {});
-    cost.ObserveBoth(0, Patch(100), Patch(100), 0);
-    cost.ObserveBoth(1, Patch(100), Patch(100), 0.3F);
+    cost.ObserveBoth(0, Patch(100), Patch(100), {});
+    cost.ObserveBoth(1, Patch(100), Patch(100), {.bend = 0.3F});
+    EXPECT_GT(cost.cost()[1], cost.cost()[0] + 5);
+}
+
+TEST(SeamCostTest, AFieldThatMayBeWrongCosts) {
+    SeamCost cost(2, {});
+    cost.ObserveBoth(0, Patch(100), Patch(100), {});
+    cost.ObserveBoth(1, Patch(100), Patch(100), {.doubt_px = 2});
     EXPECT_GT(cost.cost()[1], cost.cost()[0] + 5);
 }
 

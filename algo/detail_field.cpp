@@ -1,0 +1,200 @@
+#include "algo/detail_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hitchview::algo {
+namespace {
+
+using Eigen::Vector2f;
+
+constexpr auto kSpacing_px = static_cast<float>(CornerField::kSpacing_px);
+/// Pull of a corner's neighbours where no sample agrees with what it should be.
+constexpr float kLeastSupport = 0.02F;
+constexpr int kRounds = 3;  // of the robust mean
+
+}  // namespace
+
+DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& options)
+    : canvas_(canvas),
+      mesh_(canvas),
+      options_(options),
+      scanlines_(CornerField::CornersOver(canvas.height_px),
+                 CornerField::CornersOver(canvas.width_px) / 2 + 1, options.scanlines),
+      wanted_(canvas, Vector2f::Zero()),
+      support_(canvas, 0),
+      misses_(canvas, Vector2f::Zero()),
+      detail_(canvas, Vector2f::Zero()),
+      doubt_px_(canvas, static_cast<float>(options.unknown_px)) {
+    samples_.resize(static_cast<std::size_t>(detail_.rows() * detail_.cols()));
+}
+
+void DetailField::Clear() {
+    for (Samples& samples : samples_) samples.clear();
+}
+
+void DetailField::Add(const CanvasPair& pair, float weight) {
+    const auto& [met, e] = DiscrepancyOf(pair, canvas_, options_.kappa);
+    const auto col = static_cast<int>(std::lround((met.x() + 0.5) / kSpacing_px));
+    const auto row = static_cast<int>(std::lround((met.y() + 0.5) / kSpacing_px));
+    if (row < 0 || col < 0 || row >= detail_.rows() || col >= detail_.cols()) return;
+    samples_[Index(row, col)].push_back(
+        {(met - CornerField::Pixel(row, col)).cast<float>(), e.cast<float>(), weight});
+}
+
+void DetailField::Fit(const VertexField& discrepancy) {
+    detail_.Fill(Vector2f::Zero());
+    doubt_px_.Fill(static_cast<float>(options_.unknown_px));
+    for (const Overlap overlap : kOverlaps) FitOverlap(overlap, discrepancy);
+}
+
+void DetailField::FitOverlap(Overlap overlap, const VertexField& discrepancy) {
+    const Range range = FindRange(overlap);
+    if (range.last <= range.first) return;
+    // What is near lies farther forward in the trailer's view: to the right, in the left overlap.
+    const float sign = overlap == Overlap::kLeft ? 1.0F : -1.0F;
+    scanlines_.Start(range.last - range.first + 1);
+    Vote(range, sign);
+    scanlines_.Solve();
+    for (int row = 0; row < detail_.rows(); ++row) {
+        for (int col = range.first; col <= range.last; ++col)
+            Settle(row, col, range, sign * scanlines_.At(row, col - range.first));
+    }
+    Subtract(discrepancy, range);
+    for (int sweep = 0; sweep < options_.sweeps; ++sweep) Sweep(range);
+    Doubt(discrepancy, range);
+}
+
+DetailField::Range DetailField::FindRange(Overlap overlap) const {
+    const int half = detail_.cols() / 2;
+    const int from = overlap == Overlap::kLeft ? 0 : half;
+    Range range{detail_.cols(), -1};
+    for (int row = 0; row < detail_.rows(); ++row) {
+        for (int col = from; col < from + half; ++col) {
+            if (samples_[Index(row, col)].empty()) continue;
+            range.first = std::min(range.first, col);
+            range.last = std::max(range.last, col);
+        }
+    }
+    return range;
+}
+
+/// Each sample for the four corners round it.
+void DetailField::Vote(const Range& range, float sign) {
+    const auto vote = [&](int row, int col, const Sample& s, float share) {
+        if (row < 0 || row >= detail_.rows() || col < range.first || col > range.last) return;
+        scanlines_.Vote(row, col - range.first, sign * s.e_px.x(), s.weight * share);
+    };
+    for (int row = 0; row < detail_.rows(); ++row) {
+        for (int col = range.first; col <= range.last; ++col) {
+            for (const Sample& s : samples_[Index(row, col)]) {
+                const Vector2f share = s.off_px.cwiseAbs() / kSpacing_px;
+                const int down = s.off_px.y() > 0 ? 1 : -1;
+                const int across = s.off_px.x() > 0 ? 1 : -1;
+                vote(row, col, s, (1 - share.x()) * (1 - share.y()));
+                vote(row, col + across, s, share.x() * (1 - share.y()));
+                vote(row + down, col, s, (1 - share.x()) * share.y());
+                vote(row + down, col + across, s, share.x() * share.y());
+            }
+        }
+    }
+}
+
+/// `visit` gets the samples of a corner and of the eight round it, with their squared distances.
+template <typename Visitor>
+void DetailField::VisitAround(int row, int col, const Range& range, const Visitor& visit) const {
+    for (int r = std::max(0, row - 1); r <= std::min(detail_.rows() - 1, row + 1); ++r) {
+        for (int c = std::max(range.first, col - 1); c <= std::min(range.last, col + 1); ++c) {
+            const Vector2f from{kSpacing_px * static_cast<float>(c - col),
+                                kSpacing_px * static_cast<float>(r - row)};
+            for (const Sample& s : samples_[Index(r, c)]) visit(s, (s.off_px + from).squaredNorm());
+        }
+    }
+}
+
+/// Robust mean of the samples that agree with the value in x that the scanlines found.
+void DetailField::Settle(int row, int col, const Range& range, float start_px) {
+    const auto spread_px2 = static_cast<float>(2 * options_.spread_px * options_.spread_px);
+    Vector2f mean{start_px, 0};
+    float support = 0;
+    for (int round = 0; round < kRounds; ++round) {
+        const auto scale_px =
+            static_cast<float>(round == 0 ? options_.scanlines.tolerance_px : options_.outlier_px);
+        const float down = round == 0 ? 0.2F : 1.0F;  // the start says nothing of y
+        Vector2f sum = Vector2f::Zero();
+        support = 0;
+        VisitAround(row, col, range, [&](const Sample& s, float distance_px2) {
+            const Vector2f miss = s.e_px - mean;
+            const float ratio =
+                Vector2f{miss.x(), down * miss.y()}.squaredNorm() / (scale_px * scale_px);
+            if (ratio > 4) return;
+            const float weight =
+                s.weight * std::exp(-distance_px2 / spread_px2) / ((1 + ratio) * (1 + ratio));
+            sum += weight * s.e_px;
+            support += weight;
+        });
+        if (support <= 0) break;
+        mean = sum / support;
+    }
+    wanted_.at(row, col) = mean;
+    support_.at(row, col) = std::max(support, kLeastSupport);
+}
+
+void DetailField::Subtract(const VertexField& discrepancy, const Range& range) {
+    for (int row = 0; row < detail_.rows(); ++row) {
+        for (int col = range.first; col <= range.last; ++col) {
+            wanted_.at(row, col) -=
+                algo::Sample(mesh_, discrepancy, CornerField::Pixel(row, col)).cast<float>();
+            detail_.at(row, col) = wanted_.at(row, col);
+        }
+    }
+}
+
+/// Gauss-Seidel on sum support |u - wanted|^2 + smoothness |grad u|^2.
+void DetailField::Sweep(const Range& range) {
+    const auto smoothness = static_cast<float>(options_.smoothness);
+    for (int row = 1; row + 1 < detail_.rows(); ++row) {
+        for (int col = range.first + 1; col < range.last; ++col) {
+            const Vector2f around = detail_.at(row, col - 1) + detail_.at(row, col + 1) +
+                                    detail_.at(row - 1, col) + detail_.at(row + 1, col);
+            const float support = support_.at(row, col);
+            detail_.at(row, col) =
+                (smoothness * around + support * wanted_.at(row, col)) / (4 * smoothness + support);
+        }
+    }
+}
+
+void DetailField::Doubt(const VertexField& discrepancy, const Range& range) {
+    for (int row = 0; row < detail_.rows(); ++row) {
+        for (int col = range.first; col <= range.last; ++col)
+            misses_.at(row, col) = MissesAt(discrepancy, row, col);
+    }
+    for (int row = 0; row < detail_.rows(); ++row) {
+        for (int col = range.first; col <= range.last; ++col) {
+            Vector2f sum{static_cast<float>(options_.unknown_px), 1};
+            for (int r = std::max(0, row - 1); r <= std::min(detail_.rows() - 1, row + 1); ++r) {
+                for (int c = std::max(range.first, col - 1); c <= std::min(range.last, col + 1);
+                     ++c)
+                    sum += misses_.at(r, c);
+            }
+            doubt_px_.at(row, col) = sum.x() / sum.y();
+        }
+    }
+}
+
+/// How far the samples nearest to a corner are off, weighted, and their weights.
+Vector2f DetailField::MissesAt(const VertexField& discrepancy, int row, int col) const {
+    constexpr float kLeastWeight = 0.2F;  // what is hard to match is in doubt, too
+    const Vector2f e = detail_.at(row, col) +
+                       algo::Sample(mesh_, discrepancy, CornerField::Pixel(row, col)).cast<float>();
+    Vector2f misses = Vector2f::Zero();
+    for (const Sample& s : samples_[Index(row, col)]) {
+        const float weight = std::max(kLeastWeight, s.weight);
+        const float miss_px = (s.e_px - e).norm();
+        misses +=
+            weight * Vector2f{std::min(miss_px, static_cast<float>(options_.most_doubt_px)), 1};
+    }
+    return misses;
+}
+
+}  // namespace hitchview::algo

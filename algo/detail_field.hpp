@@ -1,0 +1,86 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "algo/corner_grid.hpp"
+#include "algo/fixed_vector.hpp"
+#include "algo/mesh.hpp"
+#include "algo/scanline_fit.hpp"
+#include "algo/stitching_motion_field.hpp"
+#include "algo/unit.hpp"
+
+namespace hitchview::algo {
+
+struct DetailFieldOptions {
+    double kappa = 0.5;         ///< as of the stitching field
+    double spread_px = 5;       ///< of the samples that make up a corner's value
+    double outlier_px = 2;      ///< a sample this far off its corner's value counts a quarter
+    double smoothness = 0.05;   ///< of the membrane, against a corner with one full sample
+    int sweeps = 6;             ///< of the membrane
+    double most_doubt_px = 20;  ///< of a single sample
+    double unknown_px = 8;      ///< doubt where there is no sample
+    ScanlineFitOptions scanlines{};
+};
+
+/// What the mesh of the stitching field is too coarse for: things with edges in depth. The rest of
+/// the discrepancy, fitted to a dense set of pairs at the corners of the composed map. Where near
+/// and far things meet on one place, the field follows what it can follow without a fold
+/// (ScanlineFit). Ring only: an overlap in each half of the canvas. Memory is taken at
+/// construction; not thread-safe.
+class DetailField {
+ public:
+    DetailField(const Projection& canvas, const DetailFieldOptions& options);
+
+    void Clear();
+    /// Takes a pair; `weight` 0..1: how well it is known. What does not fit any more is left out.
+    void Add(const CanvasPair& pair, float weight);
+    /// Fits to what was added; `discrepancy`: what the mesh says of it.
+    void Fit(const VertexField& discrepancy);
+
+    /// To be added to the discrepancy of the mesh, px. Zero outside the overlaps.
+    [[nodiscard]] const CornerField& detail() const { return detail_; }
+    /// How far the samples round a corner are off the result on average, px; unknown_px without.
+    [[nodiscard]] const CornerScalars& doubt_px() const { return doubt_px_; }
+
+ private:
+    struct Sample {
+        Eigen::Vector2f off_px;  ///< from the corner
+        Eigen::Vector2f e_px;    ///< discrepancy
+        float weight;
+    };
+    static constexpr std::size_t kMaxSamples = 12;
+    using Samples = FixedVector<Sample, kMaxSamples>;
+    /// Columns of corners that have samples, both ends included.
+    struct Range {
+        int first = 0;
+        int last = -1;
+    };
+
+    [[nodiscard]] Range FindRange(Overlap overlap) const;
+    void FitOverlap(Overlap overlap, const VertexField& discrepancy);
+    void Vote(const Range& range, float sign);
+    void Settle(int row, int col, const Range& range, float start_px);
+    void Subtract(const VertexField& discrepancy, const Range& range);
+    void Sweep(const Range& range);
+    void Doubt(const VertexField& discrepancy, const Range& range);
+    [[nodiscard]] Eigen::Vector2f MissesAt(const VertexField& discrepancy, int row, int col) const;
+    template <typename Visitor>
+    void VisitAround(int row, int col, const Range& range, const Visitor& visit) const;
+    [[nodiscard]] std::size_t Index(int row, int col) const {
+        return static_cast<std::size_t>(row * detail_.cols() + col);
+    }
+
+    Projection canvas_;
+    Mesh mesh_;
+    DetailFieldOptions options_;
+    std::vector<Samples> samples_;  // of each corner: those nearer to it than to others
+    ScanlineFit scanlines_;
+    CornerField wanted_;     // the discrepancy, then its rest
+    CornerScalars support_;  // weight of the samples that agree with it
+    CornerField misses_;     // weighted sum and weight of each corner
+    CornerField detail_;
+    CornerScalars doubt_px_;
+};
+
+}  // namespace hitchview::algo

@@ -1,0 +1,201 @@
+#include "algo/overlap_parallax.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "algo/feature_mask.hpp"
+#include "algo/match_refinement.hpp"
+
+namespace hitchview::algo {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2f;
+using Eigen::Vector3d;
+using Cost = SemiGlobalMatching::Cost;
+
+/// Where one view shows nothing, all distances are alike.
+constexpr Cost kUnseen = 20;
+
+int NodesOver(int length_px, int pitch_px) {
+    return (length_px + pitch_px - 1) / pitch_px;
+}
+
+/// The pixel and its neighbourhood lie in the picture, and features may lie there.
+bool HasSignature(const cv::Mat1b& mask, int x, int y) {
+    constexpr int kHalf = Census::kHalf;
+    return x >= kHalf && y >= kHalf && x + kHalf < mask.cols && y + kHalf < mask.rows &&
+           mask(y, x) != 0;
+}
+
+}  // namespace
+
+OverlapParallax::OverlapParallax(const PerUnit<UnitGeometry>& geometry,
+                                 const PerUnit<const SemiSurroundView*>& views, Overlap overlap,
+                                 const OverlapParallaxOptions& options)
+    : geometry_(geometry),
+      views_(views),
+      options_(options),
+      first_px_(overlap == Overlap::kLeft ? 0 : views[Unit::kTractor]->width_px() / 2),
+      end_px_(overlap == Overlap::kLeft ? views[Unit::kTractor]->width_px() / 2
+                                        : views[Unit::kTractor]->width_px()),
+      curve_rows_(NodesOver(views[Unit::kTractor]->height_px(), kCurvePitch_px) + 1),
+      curve_cols_(NodesOver(end_px_ - first_px_, kCurvePitch_px) + 1),
+      sights_(static_cast<std::size_t>(curve_rows_ * curve_cols_)),
+      curves_(sights_.size()),
+      census_{{Census(views[Unit::kTractor]->width_px(), views[Unit::kTractor]->height_px()),
+               Census(views[Unit::kTrailer]->width_px(), views[Unit::kTrailer]->height_px())}},
+      max_cols_(NodesOver(end_px_ - first_px_, kPitch_px)),
+      matching_(NodesOver(views[Unit::kTractor]->height_px(), kPitch_px), max_cols_, options.labels,
+                options.matching),
+      matches_(static_cast<std::size_t>(matching_.rows() * max_cols_)) {
+    LookOut();
+}
+
+void OverlapParallax::LookOut() {
+    const SemiSurroundView& view = *views_[Unit::kTractor];
+    const UnitGeometry& tractor = geometry_[Unit::kTractor];
+    for (int row = 0; row < curve_rows_; ++row) {
+        for (int col = 0; col < curve_cols_; ++col) {
+            const Vector2f at{static_cast<float>(first_px_ + kCurvePitch_px * col),
+                              static_cast<float>(kCurvePitch_px * row)};
+            Sight& sight = sights_[static_cast<std::size_t>(row * curve_cols_ + col)];
+            sight.ray = tractor.view().Ray(view.ToView(at));
+            const auto line = tractor.SightAlong(sight.ray);
+            if (!line) continue;
+            sight.line = *line;
+            sight.surface_m = tractor.SurfaceDistance_m(line->origin_m, sight.ray);
+            sight.known = true;
+        }
+    }
+}
+
+void OverlapParallax::Match(const PerUnit<MatchView>& views, const Matrix3d& R_tractor_trailer) {
+    LayCurves(R_tractor_trailer);
+    if (!ChooseColumns()) return;
+    Compare(views);
+    matching_.Solve();
+    TakeAnswers(views);
+}
+
+void OverlapParallax::LayCurves(const Matrix3d& R_tractor_trailer) {
+    for (std::size_t i = 0; i < sights_.size(); ++i)
+        curves_[i] = sights_[i].known ? CurveOf(sights_[i], R_tractor_trailer) : Curve{};
+}
+
+/// A point at distance 1 / w on the tractor's line of sight lies, seen from the trailer's camera,
+/// in the direction line + w (one camera - other camera), in the trailer's frame. This also means
+/// something for w <= 0: behind what is infinitely far.
+OverlapParallax::Curve OverlapParallax::CurveOf(const Sight& sight,
+                                                const Matrix3d& R_tractor_trailer) const {
+    const UnitGeometry& trailer = geometry_[Unit::kTrailer];
+    const auto other = trailer.SightAlong(R_tractor_trailer.transpose() * sight.ray);
+    if (!other) return {};
+    const Vector3d direction = R_tractor_trailer.transpose() * sight.line.direction;
+    const Vector3d apart_m = R_tractor_trailer.transpose() * sight.line.origin_m - other->origin_m;
+    const double farthest_per_m = 1 / sight.surface_m - options_.beyond_per_m;
+    const auto at = [&](double share) {
+        const double w = farthest_per_m + share * Span_per_m();
+        const Vector3d ray = trailer.RayToward(other->origin_m, direction + w * apart_m);
+        return views_[Unit::kTrailer]->ToAnalysis(trailer.view().Pixel(ray));
+    };
+    const Vector2f far = at(0);
+    const Vector2f middle = at(0.5);
+    const Vector2f near = at(1);
+    const auto last = static_cast<float>(options_.labels - 1);
+    if ((near - far).norm() > 2 * last) return {};  // across the edge of the view
+    Curve curve;
+    curve.start = far;
+    curve.linear = (4 * middle - 3 * far - near) / last;
+    curve.square = (2 * far + 2 * near - 4 * middle) / (last * last);
+    curve.known = true;
+    return curve;
+}
+
+/// Those between the first and the last curve; false if there is none.
+bool OverlapParallax::ChooseColumns() {
+    int first = curve_cols_;
+    int last = -1;
+    for (std::size_t i = 0; i < curves_.size(); ++i) {
+        if (!curves_[i].known) continue;
+        const int col = static_cast<int>(i) % curve_cols_;
+        first = std::min(first, col);
+        last = std::max(last, col);
+    }
+    left_px_ = first_px_ + kCurvePitch_px * first;
+    const int right_px = std::min(end_px_ - 1, first_px_ + kCurvePitch_px * last);
+    matching_.Start(first > last ? 0 : std::min(max_cols_, (right_px - left_px_) / kPitch_px + 1));
+    return first <= last;
+}
+
+/// Between the four curves round it.
+OverlapParallax::Curve OverlapParallax::CurveAt(int x, int y) const {
+    const int col = std::min((x - first_px_) / kCurvePitch_px, curve_cols_ - 2);
+    const int row = std::min(y / kCurvePitch_px, curve_rows_ - 2);
+    const float s = static_cast<float>(x - first_px_ - col * kCurvePitch_px) / kCurvePitch_px;
+    const float t = static_cast<float>(y - row * kCurvePitch_px) / kCurvePitch_px;
+    const Curve* top = curves_.data() + static_cast<std::ptrdiff_t>(row) * curve_cols_ + col;
+    const Curve* bottom = top + curve_cols_;
+    if (!top[0].known || !top[1].known || !bottom[0].known || !bottom[1].known) return {};
+    const auto mix = [&](Vector2f Curve::*part) {
+        return Vector2f((1 - t) * ((1 - s) * top[0].*part + s * top[1].*part) +
+                        t * ((1 - s) * bottom[0].*part + s * bottom[1].*part));
+    };
+    return {mix(&Curve::start), mix(&Curve::linear), mix(&Curve::square), true};
+}
+
+void OverlapParallax::Compare(const PerUnit<MatchView>& views) {
+    census_[Unit::kTractor].Build(views[Unit::kTractor].pyramid->level(0), left_px_,
+                                  NodeX(cols() - 1));
+    census_[Unit::kTrailer].Build(views[Unit::kTrailer].pyramid->level(0), 0,
+                                  views_[Unit::kTrailer]->width_px() - 1);
+    for (int row = 0; row < rows(); ++row) {
+        for (int col = 0; col < cols(); ++col) CompareNode(views, row, col);
+    }
+}
+
+void OverlapParallax::CompareNode(const PerUnit<MatchView>& views, int row, int col) {
+    Cost* cost = matching_.costs(row, col);
+    std::fill(cost, cost + options_.labels, kUnseen);
+    const int x = NodeX(col);
+    const int y = NodeY(row);
+    matching_.grey(row, col) = views[Unit::kTractor].pyramid->level(0)(y, x);
+    if (!HasSignature(*views[Unit::kTractor].mask, x, y)) return;
+    const Curve curve = CurveAt(x, y);
+    if (!curve.known) return;
+    const double surface = options_.beyond_per_m / Span_per_m() * (options_.labels - 1);
+    const std::uint64_t here = census_[Unit::kTractor].At(x, y);
+    for (int k = 0; k < options_.labels; ++k) {
+        const Vector2f there = curve.At(static_cast<float>(k));
+        const int u = static_cast<int>(there.x() + 0.5F);
+        const int v = static_cast<int>(there.y() + 0.5F);
+        if (!HasSignature(*views[Unit::kTrailer].mask, u, v)) continue;
+        const int bits = std::popcount(here ^ census_[Unit::kTrailer].At(u, v));
+        const auto bias = static_cast<int>(options_.surface_bias * std::abs(k - surface));
+        cost[k] = static_cast<Cost>(std::min(bits + bias, int{SemiGlobalMatching::kDearest}));
+    }
+}
+
+void OverlapParallax::TakeAnswers(const PerUnit<MatchView>& views) {
+    for (int row = 0; row < rows(); ++row) {
+        for (int col = 0; col < cols(); ++col) matches_[Index(row, col)] = MatchOf(views, row, col);
+    }
+}
+
+std::optional<ParallaxMatch> OverlapParallax::MatchOf(const PerUnit<MatchView>& views, int row,
+                                                      int col) const {
+    const int x = NodeX(col);
+    const int y = NodeY(row);
+    const Curve curve = CurveAt(x, y);
+    if (!curve.known || !HasSignature(*views[Unit::kTractor].mask, x, y)) return std::nullopt;
+    const SemiGlobalMatching::Answer answer = matching_.AnswerAt(row, col);
+    Vector2f there = curve.At(static_cast<float>(answer.label) + answer.fraction);
+    if (!Allows(*views[Unit::kTrailer].mask, there)) return std::nullopt;
+    const float told = RefineMatch(views[Unit::kTractor].pyramid->level(0), x, y,
+                                   views[Unit::kTrailer].pyramid->level(0), there);
+    const Vector2f here{static_cast<float>(x), static_cast<float>(y)};
+    return ParallaxMatch{{here, there}, told, answer.lead >= options_.clear_lead};
+}
+
+}  // namespace hitchview::algo

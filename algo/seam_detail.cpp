@@ -1,0 +1,76 @@
+#include "algo/seam_detail.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hitchview::algo {
+namespace {
+
+using Eigen::Vector2f;
+
+/// 1 up to the core, 0 beyond the fade.
+double ShareAt(double distance_px, const SeamDetailOptions& options) {
+    const double t = std::clamp((distance_px - options.core_px) / options.fade_px, 0.0, 1.0);
+    return 1 - t * t * (3 - 2 * t);
+}
+
+class RowFader {
+ public:
+    RowFader(const Mesh& mesh, const VertexField& discrepancy, const CornerField& detail,
+             const SeamDetailOptions& options, CornerField& shown)
+        : mesh_(mesh),
+          discrepancy_(discrepancy),
+          detail_(detail),
+          options_(options),
+          limit_(Vector2f(static_cast<float>(options.stretch), static_cast<float>(options.tilt)) *
+                 CornerField::kSpacing_px /
+                 static_cast<float>(std::max(options.kappa, 1 - options.kappa))),
+          shown_(shown) {}
+
+    /// Columns `first` to `last` of a row, on both sides of the seam.
+    void Fade(int row, double seam_px, int first, int last) const {
+        const auto nearest =
+            static_cast<int>(std::lround((seam_px + 0.5) / CornerField::kSpacing_px));
+        const int start = std::clamp(nearest, first, last);
+        shown_.at(row, start) = Wanted(row, start, seam_px);
+        for (int col = start + 1; col <= last; ++col) Walk(row, col, col - 1, seam_px);
+        for (int col = start - 1; col >= first; --col) Walk(row, col, col + 1, seam_px);
+    }
+
+ private:
+    [[nodiscard]] Vector2f Wanted(int row, int col, double seam_px) const {
+        const double distance_px = std::abs(CornerField::Pixel(row, col).x() - seam_px);
+        return static_cast<float>(ShareAt(distance_px, options_)) * detail_.at(row, col);
+    }
+    [[nodiscard]] Vector2f Coarse(int row, int col) const {
+        return Sample(mesh_, discrepancy_, CornerField::Pixel(row, col)).cast<float>();
+    }
+    void Walk(int row, int col, int before, double seam_px) const {
+        const Vector2f wanted = Wanted(row, col, seam_px);
+        const Vector2f change = Coarse(row, col) - Coarse(row, before);
+        const Vector2f step = wanted - shown_.at(row, before) + change;
+        shown_.at(row, col) =
+            shown_.at(row, before) - change + step.cwiseMax(-limit_).cwiseMin(limit_);
+    }
+
+    const Mesh& mesh_;
+    const VertexField& discrepancy_;
+    const CornerField& detail_;
+    const SeamDetailOptions& options_;
+    Vector2f limit_;
+    CornerField& shown_;
+};
+
+}  // namespace
+
+void FadeFromSeams(const Mesh& mesh, const VertexField& discrepancy, const CornerField& detail,
+                   const UnitSeams& seams, const SeamDetailOptions& options, CornerField& shown) {
+    const RowFader fader(mesh, discrepancy, detail, options, shown);
+    const int half = detail.cols() / 2;
+    for (int row = 0; row < detail.rows(); ++row) {
+        fader.Fade(row, seams.path(Overlap::kLeft).x_px(row), 0, half - 1);
+        fader.Fade(row, seams.path(Overlap::kRight).x_px(row), half, detail.cols() - 1);
+    }
+}
+
+}  // namespace hitchview::algo
