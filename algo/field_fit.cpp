@@ -49,7 +49,7 @@ void FieldFit::Fit(std::span<const PointMotion> samples, const VertexField& pred
                                   std::pow(options_.outlier_px / options_.start_outlier_px, share);
         Clear();
         AddSamples(samples, outlier_px, field);
-        AddPrior(predicted, confidence);
+        AddPrior(predicted, confidence, field);
         AddMembrane();
         for (int sweep = 0; sweep < options_.sweeps; ++sweep) Sweep(field);
         CloseRing(mesh_, field);
@@ -89,9 +89,12 @@ void FieldFit::AddSample(const PointMotion& sample, double outlier_px, const Ver
     }
 }
 
-void FieldFit::AddPrior(const VertexField& predicted, const VertexScalars& confidence) {
+void FieldFit::AddPrior(const VertexField& predicted, const VertexScalars& confidence,
+                        const VertexField& field) {
     for (int i = 0; i < Mesh::kVertices; ++i) {
-        const auto pull = static_cast<float>(options_.memory) * confidence(i);
+        const float change_px2 = (field.col(i) - predicted.col(i)).squaredNorm();
+        const float pull = static_cast<float>(options_.memory) * confidence(i) *
+                           WeightOf(change_px2, options_.change_px);
         normal_[static_cast<std::size_t>(i)][kSelf] += pull;
         right_.col(i) += pull * predicted.col(i);
     }

@@ -68,13 +68,21 @@ double MaxParallax_px(const Projection& canvas) {
     return canvas.IsRing() ? kRing_rad * canvas.focal_px : kPlane_px;
 }
 
+double MaxMeshParallax_px(const Projection& canvas) {
+    // On a ring the mesh follows the alignment surface; what stands before it would drag what is
+    // behind it along, also far from the seams.
+    constexpr double kRing_rad = 0.03;
+    return canvas.IsRing() ? kRing_rad * canvas.focal_px : MaxParallax_px(canvas);
+}
+
 StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double kappa) {
     StitchingMotionFieldOptions options;
     options.kappa = kappa;
     options.fit.fade_px = 0.055 * canvas.width_px;
     options.max_stretch = kMaxStretch / std::max(kappa, 1 - kappa);
     if (canvas.IsRing()) {  // samples are dense, and the ground tilts with each unit
-        options.fit.memory = 0.02;
+        options.fit.memory = 0.5;
+        options.fit.change_px = 1.5;
         options.fit.outlier_px = 3;
     }
     return options;

@@ -31,6 +31,8 @@ struct UnifiedVertexMotionOptions {
 
 /// Pairs farther from the rigid placement than this are another thing, not parallax; canvas px.
 double MaxParallax_px(const Projection& canvas);
+/// Pairs farther from it than this are left to the detail of the seams; canvas px.
+double MaxMeshParallax_px(const Projection& canvas);
 
 /// The stages' options for pictures of this kind and size: one place for what was tuned.
 UnitAnalysisOptions AnalysisOptions(const Projection& view);

@@ -28,6 +28,7 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
       options_(options),
       estimator_(canvas, geometry, options),
       max_parallax_px_(MaxParallax_px(canvas)),
+      max_mesh_parallax_px_(MaxMeshParallax_px(canvas)),
       stitching_(canvas, StitchingOptions(canvas, options.kappa)),
       records_(std::make_unique<std::array<RigMotion, kRecords>>()) {
     if (geometry[Unit::kTrailer]) trailer_view_ = geometry[Unit::kTrailer]->view();
@@ -148,8 +149,9 @@ void UnifiedVertexMotion::Stabilise(std::int64_t index, Unit unit) {
     composition_.stabilization[unit] = offset;
 }
 
+/// Not on a ring: there it is the parallax of a drive that is left, not shake.
 void UnifiedVertexMotion::UpdateViewOffset(const RigMotion& record, Unit unit) {
-    if (!options_.stabilize) return;
+    if (!options_.stabilize || canvas_.IsRing()) return;
     VertexField& offset = view_offset_[unit];
     offset = (kResidualKept * (offset - record.intra[unit].residual))
                  .cwiseMax(-kResidualBound_px)
@@ -214,7 +216,7 @@ void UnifiedVertexMotion::TakePairs(const InterFeatures& features) {
     for (const InterFeature& f : features) {
         const CanvasPair pair{OnCanvas(Unit::kTractor, f.tractor_px),
                               OnCanvas(Unit::kTrailer, f.trailer_px)};
-        if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < max_parallax_px_) {
+        if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < max_mesh_parallax_px_) {
             canvas_pairs_.push_back(pair);
         }
     }

@@ -67,6 +67,7 @@ class UnifiedVertexMotion final : public VertexMotion {
     RigMotionEstimator estimator_;
     MatchGuess guess_;
     double max_parallax_px_;
+    double max_mesh_parallax_px_;
     StitchingMotionField stitching_;
     std::unique_ptr<DetailField> detail_;  // ring with a trailer
     PerUnit<std::unique_ptr<UnitSmoother>> smoother_;
