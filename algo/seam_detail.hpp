@@ -8,8 +8,8 @@ namespace hitchview::algo {
 
 struct SeamDetailOptions {
     double kappa = 0.5;
-    double core_px = 24;   ///< on either side of a seam the detail counts fully
-    double fade_px = 48;   ///< from there until it counts no more
+    double core_px = 12;   ///< on either side of a seam the detail counts fully
+    double fade_px = 24;   ///< from there until it counts no more
     double stretch = 0.7;  ///< most that a unit's part may be stretched in a row, px per px
     double tilt = 0.05;    ///< likewise, rows against rows along a row
 };

@@ -10,14 +10,19 @@ namespace {
 using algo::Unit;
 using Eigen::Vector2d;
 
-/// Continues an unrolled path to where the picture shows the point now, straight over `hidden`
-/// frames.
-void Append(const algo::Projection& picture, const Vector2d& shown_px, int hidden,
+/// Continues an unrolled path to where the picture shows the point now.
+void Append(const algo::Projection& picture, const Vector2d& shown_px,
             std::vector<Vector2d>& path) {
     const Vector2d last = path.empty() ? shown_px : path.back();
     const Vector2d last_in_picture = path.empty() ? shown_px : picture.Pixel(picture.Ray(last));
-    const Vector2d way = picture.Difference(shown_px, last_in_picture);
-    for (int i = 1; i <= hidden + 1; ++i) path.push_back(last + i * way / (hidden + 1.0));
+    path.push_back(last + picture.Difference(shown_px, last_in_picture));
+}
+
+/// Continues a path to `size` points, straight to `last`.
+void Extrapolate(const Vector2d& last, std::size_t size, std::vector<Vector2d>& path) {
+    const Vector2d first = path.empty() ? last : path.back();
+    const auto steps = static_cast<double>(size - path.size());
+    for (double i = 1; i <= steps; ++i) path.push_back(first + i / steps * (last - first));
 }
 
 double PowerOf(const std::vector<Vector2d>& path, double rate_hz) {
@@ -49,21 +54,19 @@ TruthPath::TruthPath(TruthSight& sight, double rate_hz) : sight_(sight), rate_hz
 }
 
 void TruthPath::Observe(int frame, const algo::Composition& composition) {
+    algo::Composition pose = composition;
+    pose.discrepancy.setZero();
+    pose.detail = {};
     for (const Unit unit : algo::kUnits) {
-        const algo::Projection& view = sight_.geometry().units[unit]->view();
         for (std::size_t i = 0; i < kLandmarks; ++i) {
             const Sighting sighting = Look(unit, i, frame, composition);
             Segment& segment = open_[unit][i];
-            if (sighting.camera != segment.camera || segment.hidden > kLongestHidden) {
+            const bool lost = segment.view_px.size() > segment.field_px.size() + kLongestHidden;
+            if (sighting.camera != segment.camera || lost) {
                 closed_[unit].push_back(std::exchange(segment, {}));
                 segment.camera = sighting.camera;
             }
-            if (sighting.camera < 0) continue;
-            if (sight_.IsHidden(unit, sighting.camera, frame, landmarks_[i])) {
-                if (!segment.view_px.empty()) ++segment.hidden;
-            } else {
-                Extend(sighting, view, segment);
-            }
+            if (sighting.camera >= 0) Extend(unit, i, frame, sighting, pose);
         }
     }
 }
@@ -81,20 +84,33 @@ Sighting TruthPath::Look(Unit unit, std::size_t landmark, int frame,
                        composition);
 }
 
-void TruthPath::Extend(const Sighting& sighting, const algo::Projection& view,
-                       Segment& segment) const {
-    Append(view, sighting.view_px, segment.hidden, segment.view_px);
-    Append(sight_.geometry().canvas, sighting.canvas_px, segment.hidden, segment.canvas_px);
-    segment.hidden = 0;
+void TruthPath::Extend(Unit unit, std::size_t landmark, int frame, const Sighting& sighting,
+                       const algo::Composition& pose) {
+    Segment& segment = open_[unit][landmark];
+    const algo::Projection& canvas = sight_.geometry().canvas;
+    const bool hidden = sight_.IsHidden(unit, sighting.camera, frame, landmarks_[landmark]);
+    if (hidden && segment.view_px.empty()) return;  // begins where it is seen
+    const Vector2d posed_px =
+        sight_.Through(unit, sighting.camera, frame, landmarks_[landmark], pose).canvas_px;
+    Append(sight_.geometry().units[unit]->view(), sighting.view_px, segment.view_px);
+    Append(canvas, posed_px, segment.posed_px);
+    if (hidden) return;
+    Extrapolate(canvas.Difference(sighting.canvas_px, posed_px), segment.view_px.size(),
+                segment.field_px);
 }
 
 void TruthPath::AddTo(Shake& shake, const Segment& segment) const {
-    shake.largest_px = std::max(shake.largest_px, LargestSecondDifference(segment.canvas_px));
-    if (segment.canvas_px.size() < kShortest) return;
-    const auto n = static_cast<double>(segment.canvas_px.size());
-    shake.input_px += n * PowerOf(segment.view_px, rate_hz_);
-    shake.output_px += n * PowerOf(segment.canvas_px, rate_hz_);
-    shake.samples += static_cast<int>(segment.canvas_px.size());
+    std::vector<Vector2d> canvas_px = segment.field_px;
+    for (std::size_t i = 0; i < canvas_px.size(); ++i) canvas_px[i] += segment.posed_px[i];
+    const std::vector<Vector2d> view_px(
+        segment.view_px.begin(),
+        segment.view_px.begin() + static_cast<std::ptrdiff_t>(canvas_px.size()));
+    shake.largest_px = std::max(shake.largest_px, LargestSecondDifference(canvas_px));
+    if (canvas_px.size() < kShortest) return;
+    const auto n = static_cast<double>(canvas_px.size());
+    shake.input_px += n * PowerOf(view_px, rate_hz_);
+    shake.output_px += n * PowerOf(canvas_px, rate_hz_);
+    shake.samples += static_cast<int>(canvas_px.size());
 }
 
 TruthPath::Shake TruthPath::ShakeOf(Unit unit) const {

@@ -36,18 +36,20 @@ class TruthPath {
 
     /// Path of a landmark while one camera shows it: another one sees from another place, and that
     /// step is parallax of the rig, not shake.
-    /// While something hides it for a moment nobody sees where it is shown: both paths go straight.
+    /// Its path on the canvas is that of the pose and, on top, what the stitching field adds. While
+    /// something hides it for a moment nobody sees what the field adds: that goes straight then.
     struct Segment {
         int camera = -1;
         std::vector<Eigen::Vector2d> view_px;  ///< unrolled: no step where a ring closes
-        std::vector<Eigen::Vector2d> canvas_px;
-        int hidden = 0;  ///< frames since it was seen last
+        std::vector<Eigen::Vector2d> posed_px;
+        std::vector<Eigen::Vector2d> field_px;  ///< shorter while it is hidden
     };
-    static constexpr int kLongestHidden = 15;  // frames
+    static constexpr std::size_t kLongestHidden = 15;  // frames
 
     [[nodiscard]] Sighting Look(algo::Unit unit, std::size_t landmark, int frame,
                                 const algo::Composition& composition) const;
-    void Extend(const Sighting& sighting, const algo::Projection& view, Segment& segment) const;
+    void Extend(algo::Unit unit, std::size_t landmark, int frame, const Sighting& sighting,
+                const algo::Composition& pose);
     void AddTo(Shake& shake, const Segment& segment) const;
 
     TruthSight& sight_;
