@@ -38,11 +38,11 @@ class DetailFieldTest : public testing::Test {
     VertexField mesh_ = VertexField::Zero();
 };
 
-/// 128 px of something 24 px nearer than what is behind it; `sign` -1: on the vehicle's right.
+/// 128 px of something 48 px nearer than what is behind it; `sign` -1: on the vehicle's right.
 Truth Wall(double from_px, double sign) {
     return [=](const Vector2d& p) {
         const bool near = p.x() >= from_px && p.x() < from_px + 128;
-        return Vector2d(near ? sign * 24 : 0, near ? -2 : 0);
+        return Vector2d(near ? sign * 48 : 0, near ? -2 : 0);
     };
 }
 
@@ -51,9 +51,9 @@ TEST_F(DetailFieldTest, FollowsAWideNearThingInEitherOverlap) {
     Show({600, 0}, {880, 176}, Wall(680, -1));
     field_.Fit(mesh_);
     for (int row = 2; row < 20; ++row) {
-        for (int col = 34; col < 42; ++col) {
-            EXPECT_LT((At(row, col) - Vector2d(24, -2)).norm(), 0.5) << row << " " << col;
-            EXPECT_LT((At(row, col + 55) - Vector2d(-24, -2)).norm(), 0.5) << row << " " << col;
+        for (int col = 36; col < 41; ++col) {
+            EXPECT_LT((At(row, col) - Vector2d(48, -2)).norm(), 0.5) << row << " " << col;
+            EXPECT_LT((At(row, col + 55) - Vector2d(-48, -2)).norm(), 0.5) << row << " " << col;
         }
         for (int col = 22; col < 26; ++col)
             EXPECT_LT(At(row, col).norm(), 0.5) << row << " " << col;

@@ -30,7 +30,7 @@ class Chain {
             votes_.emplace_back();
             for (int v = 0; v < 3; ++v)
                 votes_.back().push_back(
-                    {random.uniform(-34.0F, 60.0F), random.uniform(0.1F, 2.0F)});
+                    {random.uniform(-34.0F, 60.0F), random.uniform(0.1F, 5.0F)});
         }
     }
     struct Vote {
