@@ -9,12 +9,20 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// No path before, and none moves.
+PathSmoother::Window Nothing() {
+    PathSmoother::Window window;
+    window.early_output = window.earlier_output = window.motion = Vector3d::Zero();
+    window.ahead.fill(Vector3d::Zero());
+    return window;
+}
+
 /// Paths as rows of frames; each step is given what UnifiedVertexMotion gives.
 Profiles SmoothCausally(UnitSmoother sut, const Profiles& T, int lookahead_frames = 0) {
     Profiles x = T;
     const auto apart = [](const auto& a, const auto& b) { return Vector3d((a - b).transpose()); };
     for (Eigen::Index t = 0; t < T.rows(); ++t) {
-        PathSmoother::Window window{};
+        PathSmoother::Window window = Nothing();
         if (t > 0) window.early_output = apart(x.row(t - 1), T.row(t));
         if (t > 1) window.earlier_output = apart(x.row(t - 2), T.row(t));
         if (t > 0) window.motion = apart(T.row(t), T.row(t - 1));
@@ -70,7 +78,7 @@ TEST(WalledPaperWeightsTest, TheTurnTakesItsShareOfTheShiftsRoom) {
 TEST(WalledPaperWeightsTest, AfterAResetItKnowsNothing) {
     const Profiles T = ShakyPaths(60);
     UnitSmoother used(WalledPaperWeights({}));
-    PathSmoother::Window elsewhere{};
+    PathSmoother::Window elsewhere = Nothing();
     elsewhere.early_output = {9, 9, 9};
     for (int t = 0; t < 30; ++t) used.Next(elsewhere);
     used.Reset();

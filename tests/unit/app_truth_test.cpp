@@ -2,14 +2,18 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include "app/truth_field.hpp"
+#include "app/truth_path.hpp"
 #include "app/truth_seam.hpp"
 #include "app/truth_spectrum.hpp"
 #include "app/truth_warp.hpp"
+#include "tests/support/simulated_pictures.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -197,6 +201,74 @@ TEST(TruthSeamTest, OnlyJumpsOfTheOwnHalfBetweenLockedFramesCount) {
     composition.discrepancy.col(algo::Mesh::Index(4, 5)) << 90, 0;
     left.Observe(algo::Overlap::kLeft, composition);
     EXPECT_DOUBLE_EQ(left.largest_px(), 5);
+}
+
+/// A rig that stands still in an empty world, and perhaps a truck that passes on its left.
+class PassedRig {
+ public:
+    static constexpr int kFrames = 150;
+
+    explicit PassedRig(std::optional<double> truck_mps) : rig_(tests::Rig(Options(truck_mps))) {
+        geometry_.canvas = algo::Projection::Cylinder(2048, 360, 0.48);
+        algo::PerUnit<std::vector<algo::CameraGeometry>> cameras;
+        for (int i = 0; i < drivers::SimulatedRig::kCameras; ++i)
+            cameras[rig_->camera(i).unit].push_back(rig_->camera(i).geometry);
+        for (const algo::Unit unit : algo::kUnits) {
+            geometry_.units[unit] =
+                algo::UnitGeometry::Ring(geometry_.canvas, cameras[unit], algo::AlignmentSurface{});
+        }
+    }
+
+    /// The canvas pans by `pan_px` per frame.
+    [[nodiscard]] TruthPath::Shake TractorsShake(double pan_px) const {
+        TruthSight sight(*rig_, geometry_);
+        TruthPath path(sight, kRate_hz);
+        algo::Composition composition;
+        for (int frame = 0; frame < kFrames; ++frame) {
+            composition.M_canvas_view[algo::Unit::kTractor] =
+                algo::ToPose(geometry_.canvas, {{pan_px * frame, 0, 0}});
+            path.Observe(frame, composition);
+        }
+        return path.ShakeOf(algo::Unit::kTractor);
+    }
+
+ private:
+    static drivers::SimulationOptions Options(std::optional<double> truck_mps) {
+        drivers::SimulationOptions options;
+        options.frames = kFrames;
+        options.width_px = 192;
+        options.height_px = 108;
+        options.speed_mps = 0;
+        options.profile = drivers::DriveProfile::kStraight;
+        for (const algo::Unit unit : algo::kUnits) options.shake[unit].scale = 0;
+        options.scene.density = 0;
+        if (truck_mps) {  // beside the rig in the middle of the drive
+            const double start_m = -0.5 * *truck_mps * kFrames / kRate_hz;
+            options.scene.trucks = {{.start_m = start_m, .across_m = 3.6, .speed_mps = *truck_mps}};
+        }
+        return options;
+    }
+
+    std::unique_ptr<drivers::SimulatedRig> rig_;
+    RigGeometry geometry_;
+};
+
+TEST(TruthPathTest, WhatIsHiddenForUpToHalfASecondIsFollowedStraightOver) {
+    const TruthPath::Shake free = PassedRig(std::nullopt).TractorsShake(1.5);
+    const TruthPath::Shake passed = PassedRig(50).TractorsShake(1.5);
+    ASSERT_GT(free.samples, 10 * PassedRig::kFrames);
+    // Ten frames behind 16 m of truck at 50 m/s; the landmark nearly ahead is hidden for 17.
+    EXPECT_LE(free.samples - passed.samples, 17);
+    EXPECT_LT(passed.largest_px, 1e-3) << "a gap would be a jump of fifteen pixels";
+    EXPECT_LT(passed.output_px, 1e-3);
+}
+
+TEST(TruthPathTest, WhatIsHiddenForLongerIsAnotherPathAfterwards) {
+    const TruthPath::Shake free = PassedRig(std::nullopt).TractorsShake(1.5);
+    const TruthPath::Shake passed = PassedRig(12).TractorsShake(1.5);
+    EXPECT_LT(passed.samples, free.samples - 5 * 40) << "16 m of truck at 12 m/s: forty frames";
+    EXPECT_GT(passed.samples, free.samples / 3);
+    EXPECT_LT(passed.largest_px, 1e-3);
 }
 
 }  // namespace
