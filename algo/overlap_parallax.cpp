@@ -1,8 +1,8 @@
 #include "algo/overlap_parallax.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "algo/feature_mask.hpp"
 #include "algo/match_refinement.hpp"
@@ -22,11 +22,14 @@ int NodesOver(int length_px, int pitch_px) {
     return (length_px + pitch_px - 1) / pitch_px;
 }
 
-/// The pixel and its neighbourhood lie in the picture, and features may lie there.
-bool HasSignature(const cv::Mat1b& mask, int x, int y) {
-    constexpr int kHalf = Census::kHalf;
-    return x >= kHalf && y >= kHalf && x + kHalf < mask.cols && y + kHalf < mask.rows &&
-           mask(y, x) != 0;
+/// Number of set bits, in a form that a compiler can apply to several words at once.
+std::uint64_t CountBits(std::uint64_t word) {
+    word -= word >> 1U & 0x5555555555555555U;
+    word = (word & 0x3333333333333333U) + (word >> 2U & 0x3333333333333333U);
+    word = (word + (word >> 4U)) & 0x0F0F0F0F0F0F0F0FU;
+    word += word >> 32U;
+    word += word >> 16U;
+    return (word + (word >> 8U)) & 0x7FU;
 }
 
 }  // namespace
@@ -46,10 +49,18 @@ OverlapParallax::OverlapParallax(const PerUnit<UnitGeometry>& geometry,
       curves_(sights_.size()),
       census_{{Census(views[Unit::kTractor]->width_px(), views[Unit::kTractor]->height_px()),
                Census(views[Unit::kTrailer]->width_px(), views[Unit::kTrailer]->height_px())}},
+      bias_(static_cast<std::size_t>(options.labels)),
+      places_(bias_.size()),
+      differences_(bias_.size()),
       max_cols_(NodesOver(end_px_ - first_px_, kPitch_px)),
       matching_(NodesOver(views[Unit::kTractor]->height_px(), kPitch_px), max_cols_, options.labels,
                 options.matching),
       matches_(static_cast<std::size_t>(matching_.rows() * max_cols_)) {
+    const double surface = options_.beyond_per_m / Span_per_m() * (options_.labels - 1);
+    for (int k = 0; k < options_.labels; ++k) {
+        bias_[static_cast<std::size_t>(k)] =
+            static_cast<std::uint8_t>(options_.surface_bias * std::abs(k - surface));
+    }
     LookOut();
 }
 
@@ -145,36 +156,75 @@ OverlapParallax::Curve OverlapParallax::CurveAt(int x, int y) const {
     return {mix(&Curve::start), mix(&Curve::linear), mix(&Curve::square), true};
 }
 
+/// The first and the last column of the trailer's view that a curve may reach: a curve lies between
+/// the columns of the three points that span it as a parabola.
+std::pair<int, int> OverlapParallax::TrailerColumns() const {
+    const auto last = static_cast<float>(options_.labels - 1);
+    std::pair<float, float> reach{std::numeric_limits<float>::max(), 0};
+    for (const Curve& curve : curves_) {
+        if (!curve.known) continue;
+        const float middle = curve.start.x() + 0.5F * last * curve.linear.x();
+        for (const float x : {curve.start.x(), middle, curve.At(last).x()})
+            reach = {std::min(reach.first, x), std::max(reach.second, x)};
+    }
+    const auto width = static_cast<float>(views_[Unit::kTrailer]->width_px());
+    return {static_cast<int>(std::clamp(reach.first, 0.0F, width)),
+            static_cast<int>(std::clamp(reach.second + 1, 0.0F, width - 1))};
+}
+
 void OverlapParallax::Compare(const PerUnit<MatchView>& views) {
-    census_[Unit::kTractor].Build(views[Unit::kTractor].pyramid->level(0), left_px_,
-                                  NodeX(cols() - 1));
-    census_[Unit::kTrailer].Build(views[Unit::kTrailer].pyramid->level(0), 0,
-                                  views_[Unit::kTrailer]->width_px() - 1);
+    const cv::Mat1b& picture = views[Unit::kTractor].pyramid->level(0);
+    census_[Unit::kTractor].Build(picture, *views[Unit::kTractor].mask, left_px_, NodeX(cols() - 1),
+                                  kPitch_px);
+    const auto [first, last] = TrailerColumns();
+    census_[Unit::kTrailer].Build(views[Unit::kTrailer].pyramid->level(0),
+                                  *views[Unit::kTrailer].mask, first, last, 1);
     for (int row = 0; row < rows(); ++row) {
-        for (int col = 0; col < cols(); ++col) CompareNode(views, row, col);
+        for (int col = 0; col < cols(); ++col) {
+            matching_.grey(row, col) = picture(NodeY(row), NodeX(col));
+            CompareNode(row, col);
+        }
     }
 }
 
-void OverlapParallax::CompareNode(const PerUnit<MatchView>& views, int row, int col) {
-    Cost* cost = matching_.costs(row, col);
-    std::fill(cost, cost + options_.labels, kUnseen);
+void OverlapParallax::CompareNode(int row, int col) {
+    Cost* __restrict cost = matching_.costs(row, col);
     const int x = NodeX(col);
     const int y = NodeY(row);
-    matching_.grey(row, col) = views[Unit::kTractor].pyramid->level(0)(y, x);
-    if (!HasSignature(*views[Unit::kTractor].mask, x, y)) return;
     const Curve curve = CurveAt(x, y);
-    if (!curve.known) return;
-    const double surface = options_.beyond_per_m / Span_per_m() * (options_.labels - 1);
-    const std::uint64_t here = census_[Unit::kTractor].At(x, y);
-    for (int k = 0; k < options_.labels; ++k) {
-        const Vector2f there = curve.At(static_cast<float>(k));
-        const int u = static_cast<int>(there.x() + 0.5F);
-        const int v = static_cast<int>(there.y() + 0.5F);
-        if (!HasSignature(*views[Unit::kTrailer].mask, u, v)) continue;
-        const int bits = std::popcount(here ^ census_[Unit::kTrailer].At(u, v));
-        const auto bias = static_cast<int>(options_.surface_bias * std::abs(k - surface));
-        cost[k] = static_cast<Cost>(std::min(bits + bias, int{SemiGlobalMatching::kDearest}));
+    if (!curve.known || !HasSignature(x, y)) {
+        std::fill(cost, cost + options_.labels, kUnseen);
+        return;
     }
+    LookAlong(curve, census_[Unit::kTractor].At(x, y));
+    const std::uint64_t* differences = differences_.data();
+    const std::uint8_t* bias = bias_.data();
+    for (int k = 0; k < options_.labels; ++k) {
+        const auto bits = static_cast<std::uint8_t>(CountBits(differences[k]));
+        const auto none = static_cast<std::uint8_t>(differences[k] >> 63U);
+        const auto seen = static_cast<Cost>(bits + bias[k]);
+        cost[k] = none != 0 ? kUnseen : std::min(seen, SemiGlobalMatching::kDearest);
+    }
+}
+
+/// Signatures along a curve against that of the node. What lies outside the picture is looked up at
+/// its border, where there are none.
+void OverlapParallax::LookAlong(const Curve& curve, std::uint64_t here) {
+    const int width = views_[Unit::kTrailer]->width_px();
+    const auto right = static_cast<float>(width - 1);
+    const auto bottom = static_cast<float>(views_[Unit::kTrailer]->height_px() - 1);
+    int* places = places_.data();
+    for (int k = 0; k < options_.labels; ++k) {
+        const auto at = static_cast<float>(k);
+        const float x = curve.start.x() + at * (curve.linear.x() + at * curve.square.x()) + 0.5F;
+        const float y = curve.start.y() + at * (curve.linear.y() + at * curve.square.y()) + 0.5F;
+        const auto u = static_cast<int>(std::min(std::max(x, 0.0F), right));
+        const auto v = static_cast<int>(std::min(std::max(y, 0.0F), bottom));
+        places[k] = v * width + u;
+    }
+    const std::uint64_t* signatures = census_[Unit::kTrailer].data();
+    std::uint64_t* differences = differences_.data();
+    for (int k = 0; k < options_.labels; ++k) differences[k] = here ^ signatures[places[k]];
 }
 
 void OverlapParallax::TakeAnswers(const PerUnit<MatchView>& views) {
@@ -188,7 +238,7 @@ std::optional<ParallaxMatch> OverlapParallax::MatchOf(const PerUnit<MatchView>& 
     const int x = NodeX(col);
     const int y = NodeY(row);
     const Curve curve = CurveAt(x, y);
-    if (!curve.known || !HasSignature(*views[Unit::kTractor].mask, x, y)) return std::nullopt;
+    if (!curve.known || !HasSignature(x, y)) return std::nullopt;
     const SemiGlobalMatching::Answer answer = matching_.AnswerAt(row, col);
     Vector2f there = curve.At(static_cast<float>(answer.label) + answer.fraction);
     if (!Allows(*views[Unit::kTrailer].mask, there)) return std::nullopt;

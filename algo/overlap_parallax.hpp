@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "algo/census.hpp"
@@ -78,8 +80,13 @@ class OverlapParallax {
     [[nodiscard]] Curve CurveOf(const Sight& sight, const Eigen::Matrix3d& R_tractor_trailer) const;
     [[nodiscard]] Curve CurveAt(int x, int y) const;
     bool ChooseColumns();
+    [[nodiscard]] std::pair<int, int> TrailerColumns() const;
     void Compare(const PerUnit<MatchView>& views);
-    void CompareNode(const PerUnit<MatchView>& views, int row, int col);
+    void CompareNode(int row, int col);
+    void LookAlong(const Curve& curve, std::uint64_t here);
+    [[nodiscard]] bool HasSignature(int x, int y) const {
+        return (census_[Unit::kTractor].At(x, y) & Census::kNone) == 0;
+    }
     void TakeAnswers(const PerUnit<MatchView>& views);
     [[nodiscard]] std::optional<ParallaxMatch> MatchOf(const PerUnit<MatchView>& views, int row,
                                                        int col) const;
@@ -102,6 +109,9 @@ class OverlapParallax {
     std::vector<Sight> sights_;
     std::vector<Curve> curves_;
     PerUnit<Census> census_;
+    std::vector<std::uint8_t> bias_;          // of each label, towards the alignment surface
+    std::vector<int> places_;                 // of the labels of one node in the trailer's census
+    std::vector<std::uint64_t> differences_;  // there, of the signatures
     int max_cols_;
     int left_px_ = 0;  // of the first column of nodes
     SemiGlobalMatching matching_;
