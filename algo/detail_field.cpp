@@ -100,41 +100,49 @@ void DetailField::Vote(const Range& range, float sign) {
     }
 }
 
-/// `visit` gets the samples of a corner and of the eight round it, with their squared distances.
-template <typename Visitor>
-void DetailField::VisitAround(int row, int col, const Range& range, const Visitor& visit) const {
+DetailField::Neighbours DetailField::Around(int row, int col, const Range& range) const {
+    const auto spread_px2 = static_cast<float>(2 * options_.spread_px * options_.spread_px);
+    Neighbours around;
     for (int r = std::max(0, row - 1); r <= std::min(detail_.rows() - 1, row + 1); ++r) {
         for (int c = std::max(range.first, col - 1); c <= std::min(range.last, col + 1); ++c) {
             const Vector2f from{kSpacing_px * static_cast<float>(c - col),
                                 kSpacing_px * static_cast<float>(r - row)};
-            for (const Sample& s : samples_[Index(r, c)]) visit(s, (s.off_px + from).squaredNorm());
+            for (const Sample& s : samples_[Index(r, c)]) {
+                around.x_px[around.count] = s.e_px.x();
+                around.y_px[around.count] = s.e_px.y();
+                around.weight[around.count] =
+                    s.weight * std::exp(-(s.off_px + from).squaredNorm() / spread_px2);
+                ++around.count;
+            }
         }
     }
+    return around;
 }
 
 /// Robust mean of the samples that agree with the value in x that the scanlines found.
 void DetailField::Settle(int row, int col, const Range& range, float start_px) {
-    const auto spread_px2 = static_cast<float>(2 * options_.spread_px * options_.spread_px);
+    const Neighbours around = Around(row, col, range);
+    Neighbours::List weight;
     Vector2f mean{start_px, 0};
     float support = 0;
     for (int round = 0; round < kRounds; ++round) {
         const auto scale_px =
             static_cast<float>(round == 0 ? options_.scanlines.tolerance_px : options_.outlier_px);
-        const float down = round == 0 ? 0.2F : 1.0F;  // the start says nothing of y
-        Vector2f sum = Vector2f::Zero();
-        support = 0;
-        VisitAround(row, col, range, [&](const Sample& s, float distance_px2) {
-            const Vector2f miss = s.e_px - mean;
-            const float ratio =
-                Vector2f{miss.x(), down * miss.y()}.squaredNorm() / (scale_px * scale_px);
-            if (ratio > 4) return;
-            const float weight =
-                s.weight * std::exp(-distance_px2 / spread_px2) / ((1 + ratio) * (1 + ratio));
-            sum += weight * s.e_px;
-            support += weight;
-        });
+        const float across = 1 / (scale_px * scale_px);
+        const float down = round == 0 ? 0.04F * across : across;  // the start says nothing of y
+        for (Eigen::Index i = 0; i < around.count; ++i) {
+            const float x_px = around.x_px[i] - mean.x();
+            const float y_px = around.y_px[i] - mean.y();
+            const float ratio = across * x_px * x_px + down * y_px * y_px;
+            const float fitting = around.weight[i] / ((1 + ratio) * (1 + ratio));
+            weight[i] = ratio > 4 ? 0 : fitting;
+        }
+        const auto used = weight.head(around.count);
+        support = used.sum();
         if (support <= 0) break;
-        mean = sum / support;
+        mean = Vector2f{(used * around.x_px.head(around.count)).sum(),
+                        (used * around.y_px.head(around.count)).sum()} /
+               support;
     }
     wanted_.at(row, col) = mean;
     support_.at(row, col) = std::max(support, kLeastSupport);

@@ -51,6 +51,14 @@ class DetailField {
     };
     static constexpr std::size_t kMaxSamples = 12;
     using Samples = FixedVector<Sample, kMaxSamples>;
+    /// The samples of a corner and of the eight round it.
+    struct Neighbours {
+        using List = Eigen::Array<float, 9 * kMaxSamples, 1>;
+        List x_px;  ///< discrepancy
+        List y_px;
+        List weight;  ///< less where far from the corner
+        Eigen::Index count = 0;
+    };
     /// Columns of corners that have samples, both ends included.
     struct Range {
         int first = 0;
@@ -65,8 +73,7 @@ class DetailField {
     void Sweep(const Range& range);
     void Doubt(const VertexField& discrepancy, const Range& range);
     [[nodiscard]] Eigen::Vector2f MissesAt(const VertexField& discrepancy, int row, int col) const;
-    template <typename Visitor>
-    void VisitAround(int row, int col, const Range& range, const Visitor& visit) const;
+    [[nodiscard]] Neighbours Around(int row, int col, const Range& range) const;
     [[nodiscard]] std::size_t Index(int row, int col) const {
         return static_cast<std::size_t>(row * detail_.cols() + col);
     }

@@ -23,6 +23,13 @@ template <int rows>
 using Rows = Eigen::Array<float, kLanes, rows>;
 using Patch = Rows<kSide>;
 
+/// 0 in the last lane.
+const Patch kInside = [] {
+    Patch inside = Patch::Ones();
+    inside.row(kSide).setZero();
+    return inside;
+}();
+
 /// The patch that is searched, its slopes, and what they tell.
 struct Template {
     Patch grey;
@@ -54,7 +61,7 @@ Patch ToTheRight(const Rows<kSide + 1>& rows) {
 
 /// Takes the mean away; the deviation times the root of the area, plus a little.
 float Level(Patch& patch) {
-    patch.row(kSide).setZero();
+    patch *= kInside;
     const float sum = patch.sum();
     const float squares = patch.square().sum();
     patch -= sum / kArea;
@@ -67,10 +74,9 @@ Template Cut(const cv::Mat1b& picture, int x, int y) {
     const int top = y - kHalf;
     const auto tall = Read<kSide + 2>(picture, left, top - 1);
     t.grey = tall.middleCols<kSide>(1);
-    t.down = 0.5F * (tall.rightCols<kSide>() - tall.leftCols<kSide>());
-    t.across = 0.5F * (Read<kSide>(picture, left + 1, top) - Read<kSide>(picture, left - 1, top));
-    t.down.row(kSide).setZero();
-    t.across.row(kSide).setZero();
+    t.down = 0.5F * kInside * (tall.rightCols<kSide>() - tall.leftCols<kSide>());
+    t.across = 0.5F * kInside *
+               (Read<kSide>(picture, left + 1, top) - Read<kSide>(picture, left - 1, top));
     const float xy = (t.across * t.down).sum();
     t.information << t.across.square().sum(), xy, xy, t.down.square().sum();
     t.deviation = Level(t.grey);

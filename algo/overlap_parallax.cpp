@@ -32,6 +32,19 @@ std::uint64_t CountBits(std::uint64_t word) {
     return (word + (word >> 8U)) & 0x7FU;
 }
 
+/// Of the labels of one node, from how its signatures differ there.
+void ToCosts(const std::vector<std::uint64_t>& differences, const std::uint8_t* __restrict bias,
+             Cost* __restrict cost) {
+    const std::size_t labels = differences.size();
+    const std::uint64_t* __restrict difference = differences.data();
+    for (std::size_t k = 0; k < labels; ++k) {
+        const auto bits = static_cast<std::uint8_t>(CountBits(difference[k]));
+        const auto none = static_cast<std::uint8_t>(difference[k] >> 63U);
+        const auto seen = static_cast<Cost>(bits + bias[k]);
+        cost[k] = none != 0 ? kUnseen : std::min(seen, SemiGlobalMatching::kDearest);
+    }
+}
+
 }  // namespace
 
 OverlapParallax::OverlapParallax(const PerUnit<UnitGeometry>& geometry,
@@ -188,7 +201,7 @@ void OverlapParallax::Compare(const PerUnit<MatchView>& views) {
 }
 
 void OverlapParallax::CompareNode(int row, int col) {
-    Cost* __restrict cost = matching_.costs(row, col);
+    Cost* cost = matching_.costs(row, col);
     const int x = NodeX(col);
     const int y = NodeY(row);
     const Curve curve = CurveAt(x, y);
@@ -197,14 +210,7 @@ void OverlapParallax::CompareNode(int row, int col) {
         return;
     }
     LookAlong(curve, census_[Unit::kTractor].At(x, y));
-    const std::uint64_t* differences = differences_.data();
-    const std::uint8_t* bias = bias_.data();
-    for (int k = 0; k < options_.labels; ++k) {
-        const auto bits = static_cast<std::uint8_t>(CountBits(differences[k]));
-        const auto none = static_cast<std::uint8_t>(differences[k] >> 63U);
-        const auto seen = static_cast<Cost>(bits + bias[k]);
-        cost[k] = none != 0 ? kUnseen : std::min(seen, SemiGlobalMatching::kDearest);
-    }
+    ToCosts(differences_, bias_.data(), cost);
 }
 
 /// Signatures along a curve against that of the node. What lies outside the picture is looked up at
@@ -213,8 +219,9 @@ void OverlapParallax::LookAlong(const Curve& curve, std::uint64_t here) {
     const int width = views_[Unit::kTrailer]->width_px();
     const auto right = static_cast<float>(width - 1);
     const auto bottom = static_cast<float>(views_[Unit::kTrailer]->height_px() - 1);
+    const int labels = options_.labels;
     int* places = places_.data();
-    for (int k = 0; k < options_.labels; ++k) {
+    for (int k = 0; k < labels; ++k) {
         const auto at = static_cast<float>(k);
         const float x = curve.start.x() + at * (curve.linear.x() + at * curve.square.x()) + 0.5F;
         const float y = curve.start.y() + at * (curve.linear.y() + at * curve.square.y()) + 0.5F;
@@ -224,7 +231,7 @@ void OverlapParallax::LookAlong(const Curve& curve, std::uint64_t here) {
     }
     const std::uint64_t* signatures = census_[Unit::kTrailer].data();
     std::uint64_t* differences = differences_.data();
-    for (int k = 0; k < options_.labels; ++k) differences[k] = here ^ signatures[places[k]];
+    for (int k = 0; k < labels; ++k) differences[k] = here ^ signatures[places[k]];
 }
 
 void OverlapParallax::TakeAnswers(const PerUnit<MatchView>& views) {
