@@ -6,6 +6,7 @@
 namespace hitchview::algo {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector2f;
 
 constexpr auto kSpacing_px = static_cast<float>(CornerField::kSpacing_px);
@@ -13,14 +14,18 @@ constexpr auto kSpacing_px = static_cast<float>(CornerField::kSpacing_px);
 constexpr float kLeastSupport = 0.02F;
 constexpr int kRounds = 3;  // of the robust mean
 
+ScanlineFit ScanlinesOver(const Projection& canvas, const DetailFieldOptions& options) {
+    return {CornerField::CornersOver(canvas.height_px),
+            CornerField::CornersOver(canvas.width_px) / 2, options.scanlines};
+}
+
 }  // namespace
 
 DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& options)
     : canvas_(canvas),
       mesh_(canvas),
       options_(options),
-      scanlines_(CornerField::CornersOver(canvas.height_px),
-                 CornerField::CornersOver(canvas.width_px) / 2 + 1, options.scanlines),
+      scanlines_{{ScanlinesOver(canvas, options), ScanlinesOver(canvas, options)}},
       wanted_(canvas, Vector2f::Zero()),
       support_(canvas, 0),
       misses_(canvas, Vector2f::Zero()),
@@ -29,48 +34,61 @@ DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& opt
     samples_.resize(static_cast<std::size_t>(detail_.rows() * detail_.cols()));
 }
 
-void DetailField::Clear() {
-    for (Samples& samples : samples_) samples.clear();
+DetailField::Range DetailField::HalfOf(Overlap overlap) const {
+    const int half = detail_.cols() / 2;
+    const int first = overlap == Overlap::kLeft ? 0 : half;
+    return {first, first + half - 1};
 }
 
-void DetailField::Add(const CanvasPair& pair, float weight) {
+void DetailField::Clear(Overlap overlap) {
+    const Range half = HalfOf(overlap);
+    for (int row = 0; row < detail_.rows(); ++row) {
+        for (int col = half.first; col <= half.last; ++col) {
+            samples_[Index(row, col)].clear();
+            detail_.at(row, col).setZero();
+            doubt_px_.at(row, col) = static_cast<float>(options_.unknown_px);
+        }
+    }
+}
+
+void DetailField::Add(Overlap overlap, const CanvasPair& pair, float weight) {
     const auto& [met, e] = DiscrepancyOf(pair, canvas_, options_.kappa);
-    const auto col = static_cast<int>(std::lround((met.x() + 0.5) / kSpacing_px));
-    const auto row = static_cast<int>(std::lround((met.y() + 0.5) / kSpacing_px));
-    if (row < 0 || col < 0 || row >= detail_.rows() || col >= detail_.cols()) return;
+    const double x = WrapColumn(met.x(), canvas_.width_px);
+    const double u = (x + 0.5) / kSpacing_px + 0.5;
+    const double v = (met.y() + 0.5) / kSpacing_px + 0.5;
+    const auto col = static_cast<int>(u);
+    const auto row = static_cast<int>(v);
+    const Range half = HalfOf(overlap);
+    if (v < 0 || row >= detail_.rows() || col < half.first || col > half.last) return;
+    const Vector2d corner = CornerField::Pixel(row, col);
     samples_[Index(row, col)].push_back(
-        {(met - CornerField::Pixel(row, col)).cast<float>(), e.cast<float>(), weight});
+        {(Vector2d(x, met.y()) - corner).cast<float>(), e.cast<float>(), weight});
 }
 
-void DetailField::Fit(const VertexField& discrepancy) {
-    detail_.Fill(Vector2f::Zero());
-    doubt_px_.Fill(static_cast<float>(options_.unknown_px));
-    for (const Overlap overlap : kOverlaps) FitOverlap(overlap, discrepancy);
-}
-
-void DetailField::FitOverlap(Overlap overlap, const VertexField& discrepancy) {
+void DetailField::Fit(Overlap overlap, const VertexField& discrepancy) {
     const Range range = FindRange(overlap);
     if (range.last <= range.first) return;
     // What is near lies farther forward in the trailer's view: to the right, in the left overlap.
     const float sign = overlap == Overlap::kLeft ? 1.0F : -1.0F;
-    scanlines_.Start(range.last - range.first + 1);
-    Vote(range, sign);
-    scanlines_.Solve();
+    ScanlineFit& scanlines = scanlines_[overlap];
+    scanlines.Start(range.last - range.first + 1);
+    Vote(range, sign, scanlines);
+    scanlines.Solve();
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col)
-            Settle(row, col, range, sign * scanlines_.At(row, col - range.first));
+            Settle(row, col, range, sign * scanlines.At(row, col - range.first));
     }
     Subtract(discrepancy, range);
     for (int sweep = 0; sweep < options_.sweeps; ++sweep) Sweep(range);
     Doubt(discrepancy, range);
 }
 
+/// The columns that have samples.
 DetailField::Range DetailField::FindRange(Overlap overlap) const {
-    const int half = detail_.cols() / 2;
-    const int from = overlap == Overlap::kLeft ? 0 : half;
+    const Range half = HalfOf(overlap);
     Range range{detail_.cols(), -1};
     for (int row = 0; row < detail_.rows(); ++row) {
-        for (int col = from; col < from + half; ++col) {
+        for (int col = half.first; col <= half.last; ++col) {
             if (samples_[Index(row, col)].empty()) continue;
             range.first = std::min(range.first, col);
             range.last = std::max(range.last, col);
@@ -80,10 +98,10 @@ DetailField::Range DetailField::FindRange(Overlap overlap) const {
 }
 
 /// Each sample for the four corners round it.
-void DetailField::Vote(const Range& range, float sign) {
+void DetailField::Vote(const Range& range, float sign, ScanlineFit& fit) const {
     const auto vote = [&](int row, int col, const Sample& s, float share) {
         if (row < 0 || row >= detail_.rows() || col < range.first || col > range.last) return;
-        scanlines_.Vote(row, col - range.first, sign * s.e_px.x(), s.weight * share);
+        fit.Vote(row, col - range.first, sign * s.e_px.x(), s.weight * share);
     };
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
