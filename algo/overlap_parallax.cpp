@@ -22,27 +22,21 @@ int NodesOver(int length_px, int pitch_px) {
     return (length_px + pitch_px - 1) / pitch_px;
 }
 
-/// Number of set bits, in a form that a compiler can apply to several words at once.
-std::uint64_t CountBits(std::uint64_t word) {
-    word -= word >> 1U & 0x5555555555555555U;
-    word = (word & 0x3333333333333333U) + (word >> 2U & 0x3333333333333333U);
-    word = (word + (word >> 4U)) & 0x0F0F0F0F0F0F0F0FU;
-    word += word >> 32U;
-    word += word >> 16U;
-    return (word + (word >> 8U)) & 0x7FU;
+/// Number of set bits in each nibble.
+std::uint16_t CountInNibbles(std::uint16_t word) {
+    const auto pairs = static_cast<std::uint16_t>(word - (word >> 1U & 0x5555U));
+    return static_cast<std::uint16_t>((pairs & 0x3333U) + (pairs >> 2U & 0x3333U));
 }
 
-/// Of the labels of one node, from how its signatures differ there.
-void ToCosts(const std::vector<std::uint64_t>& differences, const std::uint8_t* __restrict bias,
-             Cost* __restrict cost) {
-    const std::size_t labels = differences.size();
-    const std::uint64_t* __restrict difference = differences.data();
-    for (std::size_t k = 0; k < labels; ++k) {
-        const auto bits = static_cast<std::uint8_t>(CountBits(difference[k]));
-        const auto none = static_cast<std::uint8_t>(difference[k] >> 63U);
-        const auto seen = static_cast<Cost>(bits + bias[k]);
-        cost[k] = none != 0 ? kUnseen : std::min(seen, SemiGlobalMatching::kDearest);
-    }
+/// Number of set bits in three words: in the sum of their bits at each place, a two-digit number.
+std::uint16_t CountBits(std::uint16_t a, std::uint16_t b, std::uint16_t c) {
+    const auto one_of_two = static_cast<std::uint16_t>(a ^ b);
+    const auto ones = static_cast<std::uint16_t>(one_of_two ^ c);
+    const auto twos = static_cast<std::uint16_t>((a & b) | (one_of_two & c));
+    const auto nibbles =
+        static_cast<std::uint16_t>(CountInNibbles(ones) + 2U * CountInNibbles(twos));
+    const auto bytes = static_cast<std::uint16_t>((nibbles & 0x0F0FU) + (nibbles >> 4U & 0x0F0FU));
+    return static_cast<std::uint16_t>((bytes + (bytes >> 8U)) & 0xFFU);
 }
 
 }  // namespace
@@ -64,15 +58,15 @@ OverlapParallax::OverlapParallax(const PerUnit<UnitGeometry>& geometry,
                Census(views[Unit::kTrailer]->width_px(), views[Unit::kTrailer]->height_px())}},
       bias_(static_cast<std::size_t>(options.labels)),
       places_(bias_.size()),
-      differences_(bias_.size()),
       max_cols_(NodesOver(end_px_ - first_px_, kPitch_px)),
       matching_(NodesOver(views[Unit::kTractor]->height_px(), kPitch_px), max_cols_, options.labels,
                 options.matching),
       matches_(static_cast<std::size_t>(matching_.rows() * max_cols_)) {
+    differences_.fill(std::vector<std::uint16_t>(bias_.size()));
     const double surface = options_.beyond_per_m / Span_per_m() * (options_.labels - 1);
     for (int k = 0; k < options_.labels; ++k) {
         bias_[static_cast<std::size_t>(k)] =
-            static_cast<std::uint8_t>(options_.surface_bias * std::abs(k - surface));
+            static_cast<std::uint16_t>(options_.surface_bias * std::abs(k - surface));
     }
     LookOut();
 }
@@ -210,7 +204,22 @@ void OverlapParallax::CompareNode(int row, int col) {
         return;
     }
     LookAlong(curve, census_[Unit::kTractor].At(x, y));
-    ToCosts(differences_, bias_.data(), cost);
+    RateLabels(cost);
+}
+
+/// From how the signatures differ.
+void OverlapParallax::RateLabels(Cost* __restrict cost) const {
+    const int labels = options_.labels;
+    const std::uint16_t* bias = bias_.data();
+    const std::uint16_t* a = differences_[0].data();
+    const std::uint16_t* b = differences_[1].data();
+    const std::uint16_t* c = differences_[2].data();
+    const std::uint16_t* none = differences_[3].data();
+    for (int k = 0; k < labels; ++k) {
+        const auto seen = static_cast<std::uint16_t>(CountBits(a[k], b[k], c[k]) + bias[k]);
+        const std::uint16_t rated = std::min<std::uint16_t>(seen, SemiGlobalMatching::kDearest);
+        cost[k] = static_cast<Cost>(none[k] != 0 ? kUnseen : rated);
+    }
 }
 
 /// Signatures along a curve against that of the node. What lies outside the picture is looked up at
@@ -230,8 +239,14 @@ void OverlapParallax::LookAlong(const Curve& curve, std::uint64_t here) {
         places[k] = v * width + u;
     }
     const std::uint64_t* signatures = census_[Unit::kTrailer].data();
-    std::uint64_t* differences = differences_.data();
-    for (int k = 0; k < labels; ++k) differences[k] = here ^ signatures[places[k]];
+    auto& [first, second, third, fourth] = differences_;
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+        const std::uint64_t difference = here ^ signatures[places[k]];
+        first[k] = static_cast<std::uint16_t>(difference);
+        second[k] = static_cast<std::uint16_t>(difference >> 16U);
+        third[k] = static_cast<std::uint16_t>(difference >> 32U);
+        fourth[k] = static_cast<std::uint16_t>(difference >> 48U);
+    }
 }
 
 void OverlapParallax::TakeAnswers(const PerUnit<MatchView>& views) {

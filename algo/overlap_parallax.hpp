@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -84,6 +85,7 @@ class OverlapParallax {
     void Compare(const PerUnit<MatchView>& views);
     void CompareNode(int row, int col);
     void LookAlong(const Curve& curve, std::uint64_t here);
+    void RateLabels(SemiGlobalMatching::Cost* cost) const;
     [[nodiscard]] bool HasSignature(int x, int y) const {
         return (census_[Unit::kTractor].At(x, y) & Census::kNone) == 0;
     }
@@ -109,9 +111,9 @@ class OverlapParallax {
     std::vector<Sight> sights_;
     std::vector<Curve> curves_;
     PerUnit<Census> census_;
-    std::vector<std::uint8_t> bias_;          // of each label, towards the alignment surface
-    std::vector<int> places_;                 // of the labels of one node in the trailer's census
-    std::vector<std::uint64_t> differences_;  // there, of the signatures
+    std::vector<std::uint16_t> bias_;  // of each label, towards the alignment surface
+    std::vector<int> places_;          // of the labels of one node in the trailer's census
+    std::array<std::vector<std::uint16_t>, 4> differences_;  // there: signatures, in quarters
     int max_cols_;
     int left_px_ = 0;  // of the first column of nodes
     SemiGlobalMatching matching_;
