@@ -211,9 +211,12 @@ void UnifiedVertexMotion::Compose(const RigMotion& record) {
     c.articulation = record.articulation;
 }
 
+Vector2d UnifiedVertexMotion::Moved(Unit unit, const Vector2d& view_px) const {
+    return view_px + Sample(Mesh(view(unit)), view_offset_[unit], view_px);
+}
+
 Vector2d UnifiedVertexMotion::OnCanvas(Unit unit, const Vector2d& view_px) const {
-    return ViewOnCanvas::Exactly(view(unit), canvas_, composition_.M_canvas_view[unit],
-                                 view_offset_[unit], view_px);
+    return canvas_.Pixel(composition_.M_canvas_view[unit] * view(unit).Ray(Moved(unit, view_px)));
 }
 
 void UnifiedVertexMotion::TakePairs(const InterFeatures& features) {
@@ -242,7 +245,7 @@ void UnifiedVertexMotion::UpdateStitching(const RigMotion& record, const Matrix3
 void UnifiedVertexMotion::UpdateDetail(const RigMotion& record, TaskRunner& runner) {
     runner.Run(units(), [&](int i) {
         const Unit unit = kUnits[static_cast<std::size_t>(i)];
-        on_canvas_[unit]->Update(composition_.M_canvas_view[unit], view_offset_[unit]);
+        on_canvas_[unit]->Update(composition_.M_canvas_view[unit]);
     });
     runner.Run(static_cast<int>(kOverlaps.size()), [&](int i) {
         const Overlap overlap = kOverlaps[static_cast<std::size_t>(i)];
@@ -255,8 +258,9 @@ void UnifiedVertexMotion::UpdateDetail(const RigMotion& record, TaskRunner& runn
 void UnifiedVertexMotion::UpdateDetail(const ParallaxSamples& samples, Overlap overlap) {
     detail_->Clear(overlap);
     for (const ParallaxSample& sample : samples) {
-        const CanvasPair pair{on_canvas_[Unit::kTractor]->At(sample.pair.tractor_px),
-                              on_canvas_[Unit::kTrailer]->At(sample.pair.trailer_px)};
+        const CanvasPair pair{
+            on_canvas_[Unit::kTractor]->At(Moved(Unit::kTractor, sample.pair.tractor_px)),
+            on_canvas_[Unit::kTrailer]->At(Moved(Unit::kTrailer, sample.pair.trailer_px))};
         if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < max_parallax_px_)
             detail_->Add(overlap, pair, sample.weight);
     }

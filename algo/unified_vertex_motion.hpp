@@ -51,6 +51,7 @@ class UnifiedVertexMotion final : public VertexMotion {
     void TakePairs(const InterFeatures& features);
     void Compose(const RigMotion& record);
     [[nodiscard]] PathSmoother::Window Window(std::int64_t index, Unit unit) const;
+    [[nodiscard]] Eigen::Vector2d Moved(Unit unit, const Eigen::Vector2d& view_px) const;
     [[nodiscard]] Eigen::Vector2d OnCanvas(Unit unit, const Eigen::Vector2d& view_px) const;
     void LayOut();
 

@@ -14,12 +14,11 @@ ViewOnCanvas::ViewOnCanvas(const Projection& view, const Projection& canvas)
       cols_(view.width_px / kPitch_px + 2),
       nodes_(static_cast<std::size_t>(rows_ * cols_), Vector2d::Zero()) {}
 
-void ViewOnCanvas::Update(const Matrix3d& M_canvas_view, const VertexField& offset) {
+void ViewOnCanvas::Update(const Matrix3d& M_canvas_view) {
     for (int row = 0; row < rows_; ++row) {
         for (int col = 0; col < cols_; ++col) {
-            const Vector2d view_px = kPitch_px * Vector2d(col, row);
             Vector2d& node = Node(row, col);
-            node = Exactly(view_, canvas_, M_canvas_view, offset, view_px);
+            node = canvas_.Pixel(M_canvas_view * view_.Ray(kPitch_px * Vector2d(col, row)));
             if (row == 0 && col == 0) continue;
             const Vector2d& before = col > 0 ? Node(row, col - 1) : Node(row - 1, col);
             node = before + canvas_.Difference(node, before);
@@ -35,13 +34,6 @@ Vector2d ViewOnCanvas::At(const Vector2d& view_px) const {
     const Vector2d* top = nodes_.data() + static_cast<std::ptrdiff_t>(row) * cols_ + col;
     const Vector2d* bottom = top + cols_;
     return (1 - t) * ((1 - s) * top[0] + s * top[1]) + t * ((1 - s) * bottom[0] + s * bottom[1]);
-}
-
-Vector2d ViewOnCanvas::Exactly(const Projection& view, const Projection& canvas,
-                               const Matrix3d& M_canvas_view, const VertexField& offset,
-                               const Vector2d& view_px) {
-    const Vector2d moved = view_px + Sample(Mesh(view), offset, view_px);
-    return canvas.Pixel(M_canvas_view * view.Ray(moved));
 }
 
 }  // namespace hitchview::algo

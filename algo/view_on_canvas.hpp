@@ -3,29 +3,22 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "algo/mesh.hpp"
 #include "algo/projection.hpp"
 
 namespace hitchview::algo {
 
 /// Where the pixels of one unit's view lie on the canvas: exact at the nodes of a grid over the
-/// view, bilinear between them (to about 0.01 px). Memory is taken at construction.
+/// view, bilinear between them (to about 0.01 px while the canvas is tilted by less than 6
+/// degrees). Memory is taken at construction.
 class ViewOnCanvas {
  public:
     ViewOnCanvas(const Projection& view, const Projection& canvas);
 
-    /// `M_canvas_view` takes rays of the view to the canvas; `offset`: how far each pixel of the
-    /// view is moved before.
-    void Update(const Eigen::Matrix3d& M_canvas_view, const VertexField& offset);
+    /// `M_canvas_view` takes rays of the view to the canvas.
+    void Update(const Eigen::Matrix3d& M_canvas_view);
 
-    /// Canvas px; on a ring x may be off by whole turns. Outside the view's nodes: extrapolated.
+    /// Canvas px; on a ring x may be off by whole turns. Outside the view: extrapolated.
     [[nodiscard]] Eigen::Vector2d At(const Eigen::Vector2d& view_px) const;
-
-    /// The place of one pixel, exactly; on a ring x is in [-0.5, width - 0.5).
-    [[nodiscard]] static Eigen::Vector2d Exactly(const Projection& view, const Projection& canvas,
-                                                 const Eigen::Matrix3d& M_canvas_view,
-                                                 const VertexField& offset,
-                                                 const Eigen::Vector2d& view_px);
 
  private:
     static constexpr int kPitch_px = 16;
