@@ -33,7 +33,13 @@ SemiGlobalMatching::SemiGlobalMatching(int rows, int max_cols, int labels,
       grey_(Node(rows, 0)),
       costs_(At(rows, 0)),
       sums_(At(rows, 0)),
-      paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * stride_)) {}
+      paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * stride_)) {
+    for (std::size_t edge = 0; edge < jump_costs_.size(); ++edge) {
+        jump_costs_[edge] =
+            std::max(options.least_jump_cost, options.jump_cost * options.edge_grey /
+                                                  (options.edge_grey + static_cast<int>(edge)));
+    }
+}
 
 void SemiGlobalMatching::Start(int cols) {
     cols_ = cols;
@@ -70,8 +76,7 @@ void SemiGlobalMatching::Visit(int row, int col, int down, int line) {
 int SemiGlobalMatching::JumpCost(int row, int col, int from_row, int from_col) const {
     if (from_row < 0 || from_col < 0 || from_row >= rows_ || from_col >= cols_) return 0;
     const int edge = std::abs(int{grey_[Node(row, col)]} - int{grey_[Node(from_row, from_col)]});
-    return std::max(options_.least_jump_cost,
-                    options_.jump_cost * options_.edge_grey / (options_.edge_grey + edge));
+    return jump_costs_[static_cast<std::size_t>(edge)];
 }
 
 /// To each label: its cost and the cheapest way from the node before, less the minimum there,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -71,6 +72,7 @@ class SemiGlobalMatching {
     int labels_;
     int stride_;  // of one path: the labels between two that nobody takes, and their minimum
     SemiGlobalOptions options_;
+    std::array<int, 256> jump_costs_;  // by difference of grey
     std::vector<std::uint8_t> grey_;
     std::vector<Cost> costs_;
     std::vector<Sum> sums_;
