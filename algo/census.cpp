@@ -3,23 +3,68 @@
 #include <algorithm>
 
 namespace hitchview::algo {
+namespace {
 
-void Census::Build(const cv::Mat1b& picture, int first, int last) {
-    const int from = std::max(first, kHalf);
-    const int to = std::min(last, picture.cols - 1 - kHalf);
-    for (int y = kHalf; y < picture.rows - kHalf; ++y) {
-        std::uint64_t* out = signatures_.data() + static_cast<std::ptrdiff_t>(y) * width_px_;
-        const std::uint8_t* centre = picture[y];
-        std::fill(out + from, out + std::max(from, to + 1), 0);
-        for (int dy = -kHalf; dy <= kHalf; ++dy) {
-            const std::uint8_t* row = picture[y + dy];
-            for (int dx = -kHalf; dx <= kHalf; ++dx) {
-                if (dx == 0 && dy == 0) continue;
-                for (int x = from; x <= to; ++x) {
-                    out[x] = out[x] << 1U | static_cast<std::uint64_t>(row[x + dx] < centre[x]);
-                }
-            }
+/// The neighbours of a pixel, as rows and columns away from it.
+constexpr auto kNeighbours = [] {
+    std::array<std::array<int, 2>, Census::kBits> neighbours{};
+    std::size_t i = 0;
+    for (int dy = -Census::kHalf; dy <= Census::kHalf; ++dy) {
+        for (int dx = -Census::kHalf; dx <= Census::kHalf; ++dx) {
+            if (dy != 0 || dx != 0) neighbours[i++] = {dy, dx};
         }
+    }
+    return neighbours;
+}();
+
+/// Eight bits of each pixel of a row.
+void CompareEight(const std::uint8_t* __restrict centre,
+                  const std::array<const std::uint8_t*, 8>& neighbour, int count,
+                  std::uint8_t* __restrict bits) {
+    const auto [a, b, c, d, e, f, g, h] = neighbour;
+    for (int x = 0; x < count; ++x) {
+        const std::uint8_t grey = centre[x];
+        const auto bit = [&](const std::uint8_t* p, unsigned value) {
+            return static_cast<std::uint8_t>(p[x] < grey ? value : 0U);
+        };
+        bits[x] = static_cast<std::uint8_t>(bit(a, 1) | bit(b, 2) | bit(c, 4) | bit(d, 8) |
+                                            bit(e, 16) | bit(f, 32) | bit(g, 64) | bit(h, 128));
+    }
+}
+
+}  // namespace
+
+Census::Census(int width_px, int height_px)
+    : width_px_(width_px),
+      signatures_(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), kNone) {
+    bytes_.fill(std::vector<std::uint8_t>(static_cast<std::size_t>(width_px)));
+}
+
+void Census::Build(const cv::Mat1b& picture, const cv::Mat1b& mask, int first, int last,
+                   int pitch) {
+    const int from = std::max(first, kHalf);
+    const int to = std::min(last, picture.cols - 1 - kHalf) + 1;
+    for (int y = (kHalf + pitch - 1) / pitch * pitch; y < picture.rows - kHalf; y += pitch) {
+        CompareRow(picture, y, from, to);
+        std::uint64_t* out = signatures_.data() + static_cast<std::ptrdiff_t>(y) * width_px_;
+        const std::uint8_t* allowed = mask[y];
+        for (int x = from; x < to; ++x) {
+            std::uint64_t signature = 0;
+            for (const auto& bytes : bytes_)
+                signature = signature << 8U | bytes[static_cast<std::size_t>(x)];
+            out[x] = allowed[x] != 0 ? signature : kNone;
+        }
+    }
+}
+
+void Census::CompareRow(const cv::Mat1b& picture, int y, int from, int to) {
+    for (std::size_t i = 0; i < bytes_.size(); ++i) {
+        std::array<const std::uint8_t*, 8> neighbour;
+        for (std::size_t bit = 0; bit < neighbour.size(); ++bit) {
+            const auto [dy, dx] = kNeighbours[8 * i + bit];
+            neighbour[bit] = picture[y + dy] + from + dx;
+        }
+        CompareEight(picture[y] + from, neighbour, to - from, bytes_[i].data() + from);
     }
 }
 

@@ -85,7 +85,7 @@ void ComposedMap::FadeDetail(const Composition& composition, TaskRunner& runner)
     shown_detail_ = composition.detail;
     if (shown_detail_.empty() || !(*geometry_)[Unit::kTrailer]) return;
     FadeFromSeams(canvas_mesh_, composition.discrepancy, composition.detail, seams_,
-                  {.kappa = composition.kappa}, shown_detail_);
+                  {.kappa = composition.kappa}, runner, shown_detail_);
     runner.Run(rows_, [&](int row) { LocateFadedRow(composition, row); });
 }
 

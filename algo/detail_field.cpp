@@ -6,6 +6,7 @@
 namespace hitchview::algo {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector2f;
 
 constexpr auto kSpacing_px = static_cast<float>(CornerField::kSpacing_px);
@@ -13,14 +14,18 @@ constexpr auto kSpacing_px = static_cast<float>(CornerField::kSpacing_px);
 constexpr float kLeastSupport = 0.02F;
 constexpr int kRounds = 3;  // of the robust mean
 
+ScanlineFit ScanlinesOver(const Projection& canvas, const DetailFieldOptions& options) {
+    return {CornerField::CornersOver(canvas.height_px),
+            CornerField::CornersOver(canvas.width_px) / 2, options.scanlines};
+}
+
 }  // namespace
 
 DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& options)
     : canvas_(canvas),
       mesh_(canvas),
       options_(options),
-      scanlines_(CornerField::CornersOver(canvas.height_px),
-                 CornerField::CornersOver(canvas.width_px) / 2 + 1, options.scanlines),
+      scanlines_{{ScanlinesOver(canvas, options), ScanlinesOver(canvas, options)}},
       wanted_(canvas, Vector2f::Zero()),
       support_(canvas, 0),
       misses_(canvas, Vector2f::Zero()),
@@ -29,48 +34,61 @@ DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& opt
     samples_.resize(static_cast<std::size_t>(detail_.rows() * detail_.cols()));
 }
 
-void DetailField::Clear() {
-    for (Samples& samples : samples_) samples.clear();
+DetailField::Range DetailField::HalfOf(Overlap overlap) const {
+    const int half = detail_.cols() / 2;
+    const int first = overlap == Overlap::kLeft ? 0 : half;
+    return {first, first + half - 1};
 }
 
-void DetailField::Add(const CanvasPair& pair, float weight) {
+void DetailField::Clear(Overlap overlap) {
+    const Range half = HalfOf(overlap);
+    for (int row = 0; row < detail_.rows(); ++row) {
+        for (int col = half.first; col <= half.last; ++col) {
+            samples_[Index(row, col)].clear();
+            detail_.at(row, col).setZero();
+            doubt_px_.at(row, col) = static_cast<float>(options_.unknown_px);
+        }
+    }
+}
+
+void DetailField::Add(Overlap overlap, const CanvasPair& pair, float weight) {
     const auto& [met, e] = DiscrepancyOf(pair, canvas_, options_.kappa);
-    const auto col = static_cast<int>(std::lround((met.x() + 0.5) / kSpacing_px));
-    const auto row = static_cast<int>(std::lround((met.y() + 0.5) / kSpacing_px));
-    if (row < 0 || col < 0 || row >= detail_.rows() || col >= detail_.cols()) return;
+    const double x = WrapColumn(met.x(), canvas_.width_px);
+    const double u = (x + 0.5) / kSpacing_px + 0.5;
+    const double v = (met.y() + 0.5) / kSpacing_px + 0.5;
+    const auto col = static_cast<int>(u);
+    const auto row = static_cast<int>(v);
+    const Range half = HalfOf(overlap);
+    if (v < 0 || row >= detail_.rows() || col < half.first || col > half.last) return;
+    const Vector2d corner = CornerField::Pixel(row, col);
     samples_[Index(row, col)].push_back(
-        {(met - CornerField::Pixel(row, col)).cast<float>(), e.cast<float>(), weight});
+        {(Vector2d(x, met.y()) - corner).cast<float>(), e.cast<float>(), weight});
 }
 
-void DetailField::Fit(const VertexField& discrepancy) {
-    detail_.Fill(Vector2f::Zero());
-    doubt_px_.Fill(static_cast<float>(options_.unknown_px));
-    for (const Overlap overlap : kOverlaps) FitOverlap(overlap, discrepancy);
-}
-
-void DetailField::FitOverlap(Overlap overlap, const VertexField& discrepancy) {
+void DetailField::Fit(Overlap overlap, const VertexField& discrepancy) {
     const Range range = FindRange(overlap);
     if (range.last <= range.first) return;
     // What is near lies farther forward in the trailer's view: to the right, in the left overlap.
     const float sign = overlap == Overlap::kLeft ? 1.0F : -1.0F;
-    scanlines_.Start(range.last - range.first + 1);
-    Vote(range, sign);
-    scanlines_.Solve();
+    ScanlineFit& scanlines = scanlines_[overlap];
+    scanlines.Start(range.last - range.first + 1);
+    Vote(range, sign, scanlines);
+    scanlines.Solve();
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col)
-            Settle(row, col, range, sign * scanlines_.At(row, col - range.first));
+            Settle(row, col, range, sign * scanlines.At(row, col - range.first));
     }
     Subtract(discrepancy, range);
     for (int sweep = 0; sweep < options_.sweeps; ++sweep) Sweep(range);
     Doubt(discrepancy, range);
 }
 
+/// The columns that have samples.
 DetailField::Range DetailField::FindRange(Overlap overlap) const {
-    const int half = detail_.cols() / 2;
-    const int from = overlap == Overlap::kLeft ? 0 : half;
+    const Range half = HalfOf(overlap);
     Range range{detail_.cols(), -1};
     for (int row = 0; row < detail_.rows(); ++row) {
-        for (int col = from; col < from + half; ++col) {
+        for (int col = half.first; col <= half.last; ++col) {
             if (samples_[Index(row, col)].empty()) continue;
             range.first = std::min(range.first, col);
             range.last = std::max(range.last, col);
@@ -80,10 +98,10 @@ DetailField::Range DetailField::FindRange(Overlap overlap) const {
 }
 
 /// Each sample for the four corners round it.
-void DetailField::Vote(const Range& range, float sign) {
+void DetailField::Vote(const Range& range, float sign, ScanlineFit& fit) const {
     const auto vote = [&](int row, int col, const Sample& s, float share) {
         if (row < 0 || row >= detail_.rows() || col < range.first || col > range.last) return;
-        scanlines_.Vote(row, col - range.first, sign * s.e_px.x(), s.weight * share);
+        fit.Vote(row, col - range.first, sign * s.e_px.x(), s.weight * share);
     };
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
@@ -100,41 +118,49 @@ void DetailField::Vote(const Range& range, float sign) {
     }
 }
 
-/// `visit` gets the samples of a corner and of the eight round it, with their squared distances.
-template <typename Visitor>
-void DetailField::VisitAround(int row, int col, const Range& range, const Visitor& visit) const {
+DetailField::Neighbours DetailField::Around(int row, int col, const Range& range) const {
+    const auto spread_px2 = static_cast<float>(2 * options_.spread_px * options_.spread_px);
+    Neighbours around;
     for (int r = std::max(0, row - 1); r <= std::min(detail_.rows() - 1, row + 1); ++r) {
         for (int c = std::max(range.first, col - 1); c <= std::min(range.last, col + 1); ++c) {
             const Vector2f from{kSpacing_px * static_cast<float>(c - col),
                                 kSpacing_px * static_cast<float>(r - row)};
-            for (const Sample& s : samples_[Index(r, c)]) visit(s, (s.off_px + from).squaredNorm());
+            for (const Sample& s : samples_[Index(r, c)]) {
+                around.x_px[around.count] = s.e_px.x();
+                around.y_px[around.count] = s.e_px.y();
+                around.weight[around.count] =
+                    s.weight * std::exp(-(s.off_px + from).squaredNorm() / spread_px2);
+                ++around.count;
+            }
         }
     }
+    return around;
 }
 
 /// Robust mean of the samples that agree with the value in x that the scanlines found.
 void DetailField::Settle(int row, int col, const Range& range, float start_px) {
-    const auto spread_px2 = static_cast<float>(2 * options_.spread_px * options_.spread_px);
+    const Neighbours around = Around(row, col, range);
+    Neighbours::List weight;
     Vector2f mean{start_px, 0};
     float support = 0;
     for (int round = 0; round < kRounds; ++round) {
         const auto scale_px =
             static_cast<float>(round == 0 ? options_.scanlines.tolerance_px : options_.outlier_px);
-        const float down = round == 0 ? 0.2F : 1.0F;  // the start says nothing of y
-        Vector2f sum = Vector2f::Zero();
-        support = 0;
-        VisitAround(row, col, range, [&](const Sample& s, float distance_px2) {
-            const Vector2f miss = s.e_px - mean;
-            const float ratio =
-                Vector2f{miss.x(), down * miss.y()}.squaredNorm() / (scale_px * scale_px);
-            if (ratio > 4) return;
-            const float weight =
-                s.weight * std::exp(-distance_px2 / spread_px2) / ((1 + ratio) * (1 + ratio));
-            sum += weight * s.e_px;
-            support += weight;
-        });
+        const float across = 1 / (scale_px * scale_px);
+        const float down = round == 0 ? 0.04F * across : across;  // the start says nothing of y
+        for (Eigen::Index i = 0; i < around.count; ++i) {
+            const float x_px = around.x_px[i] - mean.x();
+            const float y_px = around.y_px[i] - mean.y();
+            const float ratio = across * x_px * x_px + down * y_px * y_px;
+            const float fitting = around.weight[i] / ((1 + ratio) * (1 + ratio));
+            weight[i] = ratio > 4 ? 0 : fitting;
+        }
+        const auto used = weight.head(around.count);
+        support = used.sum();
         if (support <= 0) break;
-        mean = sum / support;
+        mean = Vector2f{(used * around.x_px.head(around.count)).sum(),
+                        (used * around.y_px.head(around.count)).sum()} /
+               support;
     }
     wanted_.at(row, col) = mean;
     support_.at(row, col) = std::max(support, kLeastSupport);

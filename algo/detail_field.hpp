@@ -26,17 +26,19 @@ struct DetailFieldOptions {
 /// What the mesh of the stitching field is too coarse for: things with edges in depth. The rest of
 /// the discrepancy, fitted to a dense set of pairs at the corners of the composed map. Where near
 /// and far things meet on one place, the field follows what it can follow without a fold
-/// (ScanlineFit). Ring only: an overlap in each half of the canvas. Memory is taken at
-/// construction; not thread-safe.
+/// (ScanlineFit); FadeFromSeams then bounds what is left of its slopes. Ring only: an overlap in
+/// each half of the canvas. Memory is taken at construction; the two overlaps may be handled at
+/// once on two threads, each call for one.
 class DetailField {
  public:
     DetailField(const Projection& canvas, const DetailFieldOptions& options);
 
-    void Clear();
-    /// Takes a pair; `weight` 0..1: how well it is known. What does not fit any more is left out.
-    void Add(const CanvasPair& pair, float weight);
+    void Clear(Overlap overlap);
+    /// Takes a pair; `weight` 0..1: how well it is known. What lies in the other half, or does not
+    /// fit any more, is left out.
+    void Add(Overlap overlap, const CanvasPair& pair, float weight);
     /// Fits to what was added; `discrepancy`: what the mesh says of it.
-    void Fit(const VertexField& discrepancy);
+    void Fit(Overlap overlap, const VertexField& discrepancy);
 
     /// To be added to the discrepancy of the mesh, px. Zero outside the overlaps.
     [[nodiscard]] const CornerField& detail() const { return detail_; }
@@ -51,22 +53,29 @@ class DetailField {
     };
     static constexpr std::size_t kMaxSamples = 12;
     using Samples = FixedVector<Sample, kMaxSamples>;
-    /// Columns of corners that have samples, both ends included.
+    /// The samples of a corner and of the eight round it.
+    struct Neighbours {
+        using List = Eigen::Array<float, 9 * kMaxSamples, 1>;
+        List x_px;  ///< discrepancy
+        List y_px;
+        List weight;  ///< less where far from the corner
+        Eigen::Index count = 0;
+    };
+    /// Columns of corners, both ends included.
     struct Range {
         int first = 0;
         int last = -1;
     };
 
+    [[nodiscard]] Range HalfOf(Overlap overlap) const;
     [[nodiscard]] Range FindRange(Overlap overlap) const;
-    void FitOverlap(Overlap overlap, const VertexField& discrepancy);
-    void Vote(const Range& range, float sign);
+    void Vote(const Range& range, float sign, ScanlineFit& fit) const;
     void Settle(int row, int col, const Range& range, float start_px);
     void Subtract(const VertexField& discrepancy, const Range& range);
     void Sweep(const Range& range);
     void Doubt(const VertexField& discrepancy, const Range& range);
     [[nodiscard]] Eigen::Vector2f MissesAt(const VertexField& discrepancy, int row, int col) const;
-    template <typename Visitor>
-    void VisitAround(int row, int col, const Range& range, const Visitor& visit) const;
+    [[nodiscard]] Neighbours Around(int row, int col, const Range& range) const;
     [[nodiscard]] std::size_t Index(int row, int col) const {
         return static_cast<std::size_t>(row * detail_.cols() + col);
     }
@@ -75,7 +84,7 @@ class DetailField {
     Mesh mesh_;
     DetailFieldOptions options_;
     std::vector<Samples> samples_;  // of each corner: those nearer to it than to others
-    ScanlineFit scanlines_;
+    PerOverlap<ScanlineFit> scanlines_;
     CornerField wanted_;     // the discrepancy, then its rest
     CornerScalars support_;  // weight of the samples that agree with it
     CornerField misses_;     // weighted sum and weight of each corner

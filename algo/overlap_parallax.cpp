@@ -1,8 +1,8 @@
 #include "algo/overlap_parallax.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "algo/feature_mask.hpp"
 #include "algo/match_refinement.hpp"
@@ -22,11 +22,21 @@ int NodesOver(int length_px, int pitch_px) {
     return (length_px + pitch_px - 1) / pitch_px;
 }
 
-/// The pixel and its neighbourhood lie in the picture, and features may lie there.
-bool HasSignature(const cv::Mat1b& mask, int x, int y) {
-    constexpr int kHalf = Census::kHalf;
-    return x >= kHalf && y >= kHalf && x + kHalf < mask.cols && y + kHalf < mask.rows &&
-           mask(y, x) != 0;
+/// Number of set bits in each nibble.
+std::uint16_t CountInNibbles(std::uint16_t word) {
+    const auto pairs = static_cast<std::uint16_t>(word - (word >> 1U & 0x5555U));
+    return static_cast<std::uint16_t>((pairs & 0x3333U) + (pairs >> 2U & 0x3333U));
+}
+
+/// Number of set bits in three words: in the sum of their bits at each place, a two-digit number.
+std::uint16_t CountBits(std::uint16_t a, std::uint16_t b, std::uint16_t c) {
+    const auto one_of_two = static_cast<std::uint16_t>(a ^ b);
+    const auto ones = static_cast<std::uint16_t>(one_of_two ^ c);
+    const auto twos = static_cast<std::uint16_t>((a & b) | (one_of_two & c));
+    const auto nibbles =
+        static_cast<std::uint16_t>(CountInNibbles(ones) + 2U * CountInNibbles(twos));
+    const auto bytes = static_cast<std::uint16_t>((nibbles & 0x0F0FU) + (nibbles >> 4U & 0x0F0FU));
+    return static_cast<std::uint16_t>((bytes + (bytes >> 8U)) & 0xFFU);
 }
 
 }  // namespace
@@ -46,10 +56,18 @@ OverlapParallax::OverlapParallax(const PerUnit<UnitGeometry>& geometry,
       curves_(sights_.size()),
       census_{{Census(views[Unit::kTractor]->width_px(), views[Unit::kTractor]->height_px()),
                Census(views[Unit::kTrailer]->width_px(), views[Unit::kTrailer]->height_px())}},
+      bias_(static_cast<std::size_t>(options.labels)),
+      places_(bias_.size()),
       max_cols_(NodesOver(end_px_ - first_px_, kPitch_px)),
       matching_(NodesOver(views[Unit::kTractor]->height_px(), kPitch_px), max_cols_, options.labels,
                 options.matching),
       matches_(static_cast<std::size_t>(matching_.rows() * max_cols_)) {
+    differences_.fill(std::vector<std::uint16_t>(bias_.size()));
+    const double surface = options_.beyond_per_m / Span_per_m() * (options_.labels - 1);
+    for (int k = 0; k < options_.labels; ++k) {
+        bias_[static_cast<std::size_t>(k)] =
+            static_cast<std::uint16_t>(options_.surface_bias * std::abs(k - surface));
+    }
     LookOut();
 }
 
@@ -145,35 +163,89 @@ OverlapParallax::Curve OverlapParallax::CurveAt(int x, int y) const {
     return {mix(&Curve::start), mix(&Curve::linear), mix(&Curve::square), true};
 }
 
+/// The first and the last column of the trailer's view that a curve may reach: a curve lies between
+/// the columns of the three points that span it as a parabola.
+std::pair<int, int> OverlapParallax::TrailerColumns() const {
+    const auto last = static_cast<float>(options_.labels - 1);
+    std::pair<float, float> reach{std::numeric_limits<float>::max(), 0};
+    for (const Curve& curve : curves_) {
+        if (!curve.known) continue;
+        const float middle = curve.start.x() + 0.5F * last * curve.linear.x();
+        for (const float x : {curve.start.x(), middle, curve.At(last).x()})
+            reach = {std::min(reach.first, x), std::max(reach.second, x)};
+    }
+    const auto width = static_cast<float>(views_[Unit::kTrailer]->width_px());
+    return {static_cast<int>(std::clamp(reach.first, 0.0F, width)),
+            static_cast<int>(std::clamp(reach.second + 1, 0.0F, width - 1))};
+}
+
 void OverlapParallax::Compare(const PerUnit<MatchView>& views) {
-    census_[Unit::kTractor].Build(views[Unit::kTractor].pyramid->level(0), left_px_,
-                                  NodeX(cols() - 1));
-    census_[Unit::kTrailer].Build(views[Unit::kTrailer].pyramid->level(0), 0,
-                                  views_[Unit::kTrailer]->width_px() - 1);
+    const cv::Mat1b& picture = views[Unit::kTractor].pyramid->level(0);
+    census_[Unit::kTractor].Build(picture, *views[Unit::kTractor].mask, left_px_, NodeX(cols() - 1),
+                                  kPitch_px);
+    const auto [first, last] = TrailerColumns();
+    census_[Unit::kTrailer].Build(views[Unit::kTrailer].pyramid->level(0),
+                                  *views[Unit::kTrailer].mask, first, last, 1);
     for (int row = 0; row < rows(); ++row) {
-        for (int col = 0; col < cols(); ++col) CompareNode(views, row, col);
+        for (int col = 0; col < cols(); ++col) {
+            matching_.grey(row, col) = picture(NodeY(row), NodeX(col));
+            CompareNode(row, col);
+        }
     }
 }
 
-void OverlapParallax::CompareNode(const PerUnit<MatchView>& views, int row, int col) {
+void OverlapParallax::CompareNode(int row, int col) {
     Cost* cost = matching_.costs(row, col);
-    std::fill(cost, cost + options_.labels, kUnseen);
     const int x = NodeX(col);
     const int y = NodeY(row);
-    matching_.grey(row, col) = views[Unit::kTractor].pyramid->level(0)(y, x);
-    if (!HasSignature(*views[Unit::kTractor].mask, x, y)) return;
     const Curve curve = CurveAt(x, y);
-    if (!curve.known) return;
-    const double surface = options_.beyond_per_m / Span_per_m() * (options_.labels - 1);
-    const std::uint64_t here = census_[Unit::kTractor].At(x, y);
-    for (int k = 0; k < options_.labels; ++k) {
-        const Vector2f there = curve.At(static_cast<float>(k));
-        const int u = static_cast<int>(there.x() + 0.5F);
-        const int v = static_cast<int>(there.y() + 0.5F);
-        if (!HasSignature(*views[Unit::kTrailer].mask, u, v)) continue;
-        const int bits = std::popcount(here ^ census_[Unit::kTrailer].At(u, v));
-        const auto bias = static_cast<int>(options_.surface_bias * std::abs(k - surface));
-        cost[k] = static_cast<Cost>(std::min(bits + bias, int{SemiGlobalMatching::kDearest}));
+    if (!curve.known || !HasSignature(x, y)) {
+        std::fill(cost, cost + options_.labels, kUnseen);
+        return;
+    }
+    LookAlong(curve, census_[Unit::kTractor].At(x, y));
+    RateLabels(cost);
+}
+
+/// From how the signatures differ.
+void OverlapParallax::RateLabels(Cost* __restrict cost) const {
+    const int labels = options_.labels;
+    const std::uint16_t* bias = bias_.data();
+    const std::uint16_t* a = differences_[0].data();
+    const std::uint16_t* b = differences_[1].data();
+    const std::uint16_t* c = differences_[2].data();
+    const std::uint16_t* none = differences_[3].data();
+    for (int k = 0; k < labels; ++k) {
+        const auto seen = static_cast<std::uint16_t>(CountBits(a[k], b[k], c[k]) + bias[k]);
+        const std::uint16_t rated = std::min<std::uint16_t>(seen, SemiGlobalMatching::kDearest);
+        cost[k] = static_cast<Cost>(none[k] != 0 ? kUnseen : rated);
+    }
+}
+
+/// Signatures along a curve against that of the node. What lies outside the picture is looked up at
+/// its border, where there are none.
+void OverlapParallax::LookAlong(const Curve& curve, std::uint64_t here) {
+    const int width = views_[Unit::kTrailer]->width_px();
+    const auto right = static_cast<float>(width - 1);
+    const auto bottom = static_cast<float>(views_[Unit::kTrailer]->height_px() - 1);
+    const int labels = options_.labels;
+    int* places = places_.data();
+    for (int k = 0; k < labels; ++k) {
+        const auto at = static_cast<float>(k);
+        const float x = curve.start.x() + at * (curve.linear.x() + at * curve.square.x()) + 0.5F;
+        const float y = curve.start.y() + at * (curve.linear.y() + at * curve.square.y()) + 0.5F;
+        const auto u = static_cast<int>(std::min(std::max(x, 0.0F), right));
+        const auto v = static_cast<int>(std::min(std::max(y, 0.0F), bottom));
+        places[k] = v * width + u;
+    }
+    const std::uint64_t* signatures = census_[Unit::kTrailer].data();
+    auto& [first, second, third, fourth] = differences_;
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+        const std::uint64_t difference = here ^ signatures[places[k]];
+        first[k] = static_cast<std::uint16_t>(difference);
+        second[k] = static_cast<std::uint16_t>(difference >> 16U);
+        third[k] = static_cast<std::uint16_t>(difference >> 32U);
+        fourth[k] = static_cast<std::uint16_t>(difference >> 48U);
     }
 }
 
@@ -188,7 +260,7 @@ std::optional<ParallaxMatch> OverlapParallax::MatchOf(const PerUnit<MatchView>& 
     const int x = NodeX(col);
     const int y = NodeY(row);
     const Curve curve = CurveAt(x, y);
-    if (!curve.known || !HasSignature(*views[Unit::kTractor].mask, x, y)) return std::nullopt;
+    if (!curve.known || !HasSignature(x, y)) return std::nullopt;
     const SemiGlobalMatching::Answer answer = matching_.AnswerAt(row, col);
     Vector2f there = curve.At(static_cast<float>(answer.label) + answer.fraction);
     if (!Allows(*views[Unit::kTrailer].mask, there)) return std::nullopt;

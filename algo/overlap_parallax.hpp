@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "algo/census.hpp"
@@ -78,8 +81,14 @@ class OverlapParallax {
     [[nodiscard]] Curve CurveOf(const Sight& sight, const Eigen::Matrix3d& R_tractor_trailer) const;
     [[nodiscard]] Curve CurveAt(int x, int y) const;
     bool ChooseColumns();
+    [[nodiscard]] std::pair<int, int> TrailerColumns() const;
     void Compare(const PerUnit<MatchView>& views);
-    void CompareNode(const PerUnit<MatchView>& views, int row, int col);
+    void CompareNode(int row, int col);
+    void LookAlong(const Curve& curve, std::uint64_t here);
+    void RateLabels(SemiGlobalMatching::Cost* cost) const;
+    [[nodiscard]] bool HasSignature(int x, int y) const {
+        return (census_[Unit::kTractor].At(x, y) & Census::kNone) == 0;
+    }
     void TakeAnswers(const PerUnit<MatchView>& views);
     [[nodiscard]] std::optional<ParallaxMatch> MatchOf(const PerUnit<MatchView>& views, int row,
                                                        int col) const;
@@ -102,6 +111,9 @@ class OverlapParallax {
     std::vector<Sight> sights_;
     std::vector<Curve> curves_;
     PerUnit<Census> census_;
+    std::vector<std::uint16_t> bias_;  // of each label, towards the alignment surface
+    std::vector<int> places_;          // of the labels of one node in the trailer's census
+    std::array<std::vector<std::uint16_t>, 4> differences_;  // there: signatures, in quarters
     int max_cols_;
     int left_px_ = 0;  // of the first column of nodes
     SemiGlobalMatching matching_;

@@ -36,9 +36,9 @@ class PathSmoother {
 
     /// What is known when frame t is emitted; relative to the path at t.
     struct Window {
-        Eigen::Vector3d early_output;                      ///< x_{t-1} - T_t
-        Eigen::Vector3d earlier_output;                    ///< x_{t-2} - T_t
-        Eigen::Vector3d motion;                            ///< T_t - T_{t-1}
+        Eigen::Vector3d early_output = Eigen::Vector3d::Zero();    ///< x_{t-1} - T_t
+        Eigen::Vector3d earlier_output = Eigen::Vector3d::Zero();  ///< x_{t-2} - T_t
+        Eigen::Vector3d motion = Eigen::Vector3d::Zero();          ///< T_t - T_{t-1}
         std::array<Eigen::Vector3d, kMaxLookahead> ahead;  ///< T_{t+j} - T_t, j = 1..lookahead
     };
 

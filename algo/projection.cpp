@@ -25,6 +25,7 @@ Matrix3d PlaneAbout(const Vector2d& centre, const Vector2d& shift, double turn) 
 }  // namespace
 
 double WrapColumn(double x, double width) {
+    if (x >= -0.5 && x < width - 0.5) return x;  // as most are
     return x - width * std::floor((x + 0.5) / width);
 }
 
@@ -67,7 +68,8 @@ Vector2d Projection::Pixel(const Vector3d& ray) const {
 
 Vector2d Projection::Difference(const Vector2d& a, const Vector2d& b) const {
     Vector2d d = a - b;
-    if (IsRing()) d.x() -= width_px * std::round(d.x() / width_px);
+    if (IsRing() && std::abs(d.x()) > 0.5 * width_px)
+        d.x() -= width_px * std::round(d.x() / width_px);
     return d;
 }
 

@@ -44,6 +44,12 @@ class ScanlineFit {
     void Listen(int col, int down);
     void SolveRow(int row);
     void Reach(int row, int col);
+    [[nodiscard]] int Before(int col, int k) const;
+    /// Prices of the cheapest ways along a row to the values of a node.
+    [[nodiscard]] std::size_t PriceIndex(int col) const {
+        return static_cast<std::size_t>(col * (kValues + 2 * options_.most_steps) +
+                                        options_.most_steps);
+    }
 
     int rows_;
     int max_cols_;
@@ -51,8 +57,7 @@ class ScanlineFit {
     ScanlineFitOptions options_;
     std::vector<float> cost_;   // less votes: less than 0
     std::vector<float> heard_;  // from above and below
-    std::vector<float> price_;  // of the cheapest way along a row to here
-    std::vector<std::int8_t> from_;
+    std::vector<float> price_;  // between values that nobody takes
     std::vector<std::int8_t> answer_;
 };
 

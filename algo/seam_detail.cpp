@@ -33,8 +33,8 @@ class RowFader {
             static_cast<int>(std::lround((seam_px + 0.5) / CornerField::kSpacing_px));
         const int start = std::clamp(nearest, first, last);
         shown_.at(row, start) = Wanted(row, start, seam_px);
-        for (int col = start + 1; col <= last; ++col) Walk(row, col, col - 1, seam_px);
-        for (int col = start - 1; col >= first; --col) Walk(row, col, col + 1, seam_px);
+        Walk(row, start, last, 1, seam_px);
+        Walk(row, start, first, -1, seam_px);
     }
 
  private:
@@ -45,12 +45,18 @@ class RowFader {
     [[nodiscard]] Vector2f Coarse(int row, int col) const {
         return Sample(mesh_, discrepancy_, CornerField::Pixel(row, col)).cast<float>();
     }
-    void Walk(int row, int col, int before, double seam_px) const {
-        const Vector2f wanted = Wanted(row, col, seam_px);
-        const Vector2f change = Coarse(row, col) - Coarse(row, before);
-        const Vector2f step = wanted - shown_.at(row, before) + change;
-        shown_.at(row, col) =
-            shown_.at(row, before) - change + step.cwiseMax(-limit_).cwiseMin(limit_);
+    /// From the corner at `start` to that at `end`, `away` at a time.
+    void Walk(int row, int start, int end, int away, double seam_px) const {
+        Vector2f coarse = Coarse(row, start);
+        for (int before = start; before != end; before += away) {
+            const int col = before + away;
+            const Vector2f next = Coarse(row, col);
+            const Vector2f change = next - coarse;
+            const Vector2f step = Wanted(row, col, seam_px) - shown_.at(row, before) + change;
+            shown_.at(row, col) =
+                shown_.at(row, before) - change + step.cwiseMax(-limit_).cwiseMin(limit_);
+            coarse = next;
+        }
     }
 
     const Mesh& mesh_;
@@ -64,13 +70,14 @@ class RowFader {
 }  // namespace
 
 void FadeFromSeams(const Mesh& mesh, const VertexField& discrepancy, const CornerField& detail,
-                   const UnitSeams& seams, const SeamDetailOptions& options, CornerField& shown) {
+                   const UnitSeams& seams, const SeamDetailOptions& options, TaskRunner& runner,
+                   CornerField& shown) {
     const RowFader fader(mesh, discrepancy, detail, options, shown);
     const int half = detail.cols() / 2;
-    for (int row = 0; row < detail.rows(); ++row) {
+    runner.Run(detail.rows(), [&](int row) {
         fader.Fade(row, seams.path(Overlap::kLeft).x_px(row), 0, half - 1);
         fader.Fade(row, seams.path(Overlap::kRight).x_px(row), half, detail.cols() - 1);
-    }
+    });
 }
 
 }  // namespace hitchview::algo

@@ -2,6 +2,7 @@
 
 #include "algo/corner_grid.hpp"
 #include "algo/mesh.hpp"
+#include "algo/task_runner.hpp"
 #include "algo/unit_seams.hpp"
 
 namespace hitchview::algo {
@@ -19,6 +20,7 @@ struct SeamDetailOptions {
 /// the seam, the whole discrepancy (mesh and detail) changes from corner to corner by so little
 /// that no unit's part of a row folds. Ring only.
 void FadeFromSeams(const Mesh& mesh, const VertexField& discrepancy, const CornerField& detail,
-                   const UnitSeams& seams, const SeamDetailOptions& options, CornerField& shown);
+                   const UnitSeams& seams, const SeamDetailOptions& options, TaskRunner& runner,
+                   CornerField& shown);
 
 }  // namespace hitchview::algo

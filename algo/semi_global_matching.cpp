@@ -3,12 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <limits>
 
 namespace hitchview::algo {
 namespace {
 
-/// Dearer than any path, and far from overflow.
-constexpr SemiGlobalMatching::Cost kNever = 8000;
+using Cost = SemiGlobalMatching::Cost;
+using Sum = SemiGlobalMatching::Sum;
+
+/// Dearer than any path, which costs at most kDearest and a jump; one step more does not overflow.
+constexpr Cost kNever = 240;
+
+/// Of the labels from `first` to before `end`.
+Sum Least(const Sum* sum, int first, int end) {
+    Sum least = std::numeric_limits<Sum>::max();
+    for (int k = first; k < end; ++k) least = std::min(least, sum[k]);
+    return least;
+}
 
 }  // namespace
 
@@ -22,10 +33,21 @@ SemiGlobalMatching::SemiGlobalMatching(int rows, int max_cols, int labels,
       grey_(Node(rows, 0)),
       costs_(At(rows, 0)),
       sums_(At(rows, 0)),
-      paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * stride_)) {}
+      paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * stride_)) {
+    for (std::size_t edge = 0; edge < jump_costs_.size(); ++edge) {
+        jump_costs_[edge] =
+            std::max(options.least_jump_cost, options.jump_cost * options.edge_grey /
+                                                  (options.edge_grey + static_cast<int>(edge)));
+    }
+}
+
+void SemiGlobalMatching::Start(int cols) {
+    cols_ = cols;
+    for (int row = 0; row < rows_; ++row)
+        std::fill(sums_.data() + At(row, 0), sums_.data() + At(row, cols), Sum{0});
+}
 
 void SemiGlobalMatching::Solve() {
-    std::fill(sums_.begin(), sums_.end(), Cost{0});
     SweepFrom(0, 1);
     SweepFrom(rows_ - 1, -1);
 }
@@ -46,22 +68,21 @@ void SemiGlobalMatching::Visit(int row, int col, int down, int line) {
     for (int p = 0; p < kPaths; ++p) {
         const auto& [from_row, from_col] = before[static_cast<std::size_t>(p)];
         Extend(costs_.data() + at, JumpCost(row, col, from_row, from_col),
-               PathAt(from_row == row ? line : 1 - line, from_col, p), PathAt(line, col, p),
-               sums_.data() + at);
+               PathAt(from_row == row ? line : 1 - line, from_col, p), PathAt(line, col, p));
     }
+    AddPaths(PathAt(line, col, 0), sums_.data() + at);
 }
 
 int SemiGlobalMatching::JumpCost(int row, int col, int from_row, int from_col) const {
     if (from_row < 0 || from_col < 0 || from_row >= rows_ || from_col >= cols_) return 0;
     const int edge = std::abs(int{grey_[Node(row, col)]} - int{grey_[Node(from_row, from_col)]});
-    return std::max(options_.least_jump_cost,
-                    options_.jump_cost * options_.edge_grey / (options_.edge_grey + edge));
+    return jump_costs_[static_cast<std::size_t>(edge)];
 }
 
 /// To each label: its cost and the cheapest way from the node before, less the minimum there,
 /// which only keeps the numbers small.
-void SemiGlobalMatching::Extend(const Cost* cost, int jump_cost, const Cost* before, Cost* path,
-                                Cost* sum) const {
+void SemiGlobalMatching::Extend(const Cost* __restrict cost, int jump_cost,
+                                const Cost* __restrict before, Cost* __restrict path) const {
     const Cost least = before[labels_ + 1];
     const auto step = static_cast<Cost>(options_.step_cost);
     const auto jump = static_cast<Cost>(least + jump_cost);
@@ -69,25 +90,28 @@ void SemiGlobalMatching::Extend(const Cost* cost, int jump_cost, const Cost* bef
     for (int k = 0; k < labels_; ++k) {
         const auto beside = static_cast<Cost>(std::min(before[k - 1], before[k + 1]) + step);
         const Cost way = std::min(std::min(before[k], beside), jump);
-        const auto value = static_cast<Cost>(cost[k] + way - least);
-        path[k] = value;
-        sum[k] = static_cast<Cost>(sum[k] + value);
-        lowest = std::min(lowest, value);
+        path[k] = static_cast<Cost>(cost[k] + way - least);
+        lowest = std::min(lowest, path[k]);
     }
     path[-1] = path[labels_] = kNever;
     path[labels_ + 1] = lowest;
 }
 
+void SemiGlobalMatching::AddPaths(const Cost* __restrict first_path, Sum* __restrict sum) const {
+    const Cost* second = first_path + stride_;
+    const Cost* third = second + stride_;
+    const Cost* fourth = third + stride_;
+    for (int k = 0; k < labels_; ++k)
+        sum[k] = static_cast<Sum>(sum[k] + first_path[k] + second[k] + third[k] + fourth[k]);
+}
+
 SemiGlobalMatching::Answer SemiGlobalMatching::AnswerAt(int row, int col) const {
-    const Cost* sum = sums_.data() + At(row, col);
-    const Cost* best = std::min_element(sum, sum + labels_);
+    const Sum* sum = sums_.data() + At(row, col);
+    const Sum* best = std::find(sum, sum + labels_, Least(sum, 0, labels_));
     Answer answer;
     answer.label = static_cast<int>(best - sum);
-    Cost second = kNever;
-    for (int k = 0; k < labels_; ++k) {
-        if (std::abs(k - answer.label) > 1) second = std::min(second, sum[k]);
-    }
-    answer.lead = second - *best;
+    answer.lead =
+        std::min(Least(sum, 0, answer.label - 1), Least(sum, answer.label + 2, labels_)) - *best;
     if (answer.label == 0 || answer.label == labels_ - 1) return answer;
     const auto left = static_cast<float>(best[-1] - *best);
     const auto right = static_cast<float>(best[1] - *best);

@@ -1,13 +1,14 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace hitchview::algo {
 
 struct SemiGlobalOptions {
-    int step_cost = 10;        ///< of a neighbour one label away
-    int jump_cost = 100;       ///< of a neighbour any farther away that looks alike
+    int step_cost = 10;        ///< of a neighbour one label away, 0..15
+    int jump_cost = 100;       ///< of a neighbour any farther away that looks alike, up to 170
     int least_jump_cost = 30;  ///< of one that looks different
     int edge_grey = 15;        ///< difference of grey that halves the cost of a jump
 };
@@ -17,14 +18,15 @@ struct SemiGlobalOptions {
 /// Hirschmueller, PAMI 2008). Memory is taken at construction; not thread-safe.
 class SemiGlobalMatching {
  public:
-    using Cost = std::int16_t;
+    using Cost = std::uint8_t;            ///< small, so that many are handled at once
+    using Sum = std::int16_t;             ///< of the costs of all paths
     static constexpr Cost kDearest = 64;  ///< for one node
 
     SemiGlobalMatching(int rows, int max_cols, int labels, const SemiGlobalOptions& options);
 
     /// The grid of this time: the first `cols` columns, 0..max_cols. All costs and greys are to be
     /// written anew.
-    void Start(int cols) { cols_ = cols; }
+    void Start(int cols);
     /// Costs of the labels of one node, 0..kDearest each.
     Cost* costs(int row, int col) { return costs_.data() + At(row, col); }
     /// What the node looks like: labels are thought to jump where it changes.
@@ -55,7 +57,8 @@ class SemiGlobalMatching {
     }
     void SweepFrom(int first_row, int down);
     void Visit(int row, int col, int down, int line);
-    void Extend(const Cost* cost, int jump_cost, const Cost* before, Cost* path, Cost* sum) const;
+    void Extend(const Cost* cost, int jump_cost, const Cost* before, Cost* path) const;
+    void AddPaths(const Cost* first_path, Sum* sum) const;
     [[nodiscard]] int JumpCost(int row, int col, int from_row, int from_col) const;
     /// The path that ends at column `col`, -1..cols, of the newest line or the one before.
     [[nodiscard]] Cost* PathAt(int line, int col, int path) {
@@ -69,9 +72,10 @@ class SemiGlobalMatching {
     int labels_;
     int stride_;  // of one path: the labels between two that nobody takes, and their minimum
     SemiGlobalOptions options_;
+    std::array<int, 256> jump_costs_;  // by difference of grey
     std::vector<std::uint8_t> grey_;
     std::vector<Cost> costs_;
-    std::vector<Cost> sums_;
+    std::vector<Sum> sums_;
     std::vector<Cost> paths_;  // of two lines of nodes
 };
 

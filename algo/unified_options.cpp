@@ -64,7 +64,7 @@ UnitAnalysisOptions AnalysisOptions(const Projection& view) {
 
 double MaxParallax_px(const Projection& canvas) {
     constexpr double kPlane_px = 24;
-    constexpr double kRing_rad = 0.65;  // two metres between the cameras, 3 m to the thing
+    constexpr double kRing_rad = 0.48;  // two metres between the cameras, 4 m to the thing
     return canvas.IsRing() ? kRing_rad * canvas.focal_px : kPlane_px;
 }
 

@@ -38,9 +38,12 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
             std::make_unique<UnitSmoother>(MakeUnitSmoother(canvas, view(unit), options));
     }
     if (has_trailer()) {
-        if (canvas.IsRing())
+        if (canvas.IsRing()) {
             detail_ =
                 std::make_unique<DetailField>(canvas, DetailFieldOptions{.kappa = options.kappa});
+            for (const Unit unit : kUnits)
+                on_canvas_[unit] = std::make_unique<ViewOnCanvas>(view(unit), canvas);
+        }
         hitch_smoother_ = std::make_unique<PathSmoother>(HitchSmootherOptions(tractor_view_));
     }
     LayOut();
@@ -85,7 +88,7 @@ const Composition* UnifiedVertexMotion::Step(const RigFrames& frames, TaskRunner
     estimator_.Estimate(frames, guess_, runner, At(analysed_));
     ++analysed_;
     if (analysed_ - emitted_ <= options_.lookahead_frames) return nullptr;
-    return Emit(emitted_++);
+    return Emit(emitted_++, runner);
 }
 
 /// A feature is expected where the frame emitted last shows it.
@@ -100,10 +103,11 @@ void UnifiedVertexMotion::UpdateGuess() {
 }
 
 const Composition* UnifiedVertexMotion::Flush() {
-    return emitted_ < analysed_ ? Emit(emitted_++) : nullptr;
+    SerialRunner runner;
+    return emitted_ < analysed_ ? Emit(emitted_++, runner) : nullptr;
 }
 
-const Composition* UnifiedVertexMotion::Emit(std::int64_t index) {
+const Composition* UnifiedVertexMotion::Emit(std::int64_t index, TaskRunner& runner) {
     const RigMotion& record = At(index);
     for (int i = 0; i < units(); ++i) {
         const Unit unit = kUnits[static_cast<std::size_t>(i)];
@@ -113,7 +117,10 @@ const Composition* UnifiedVertexMotion::Emit(std::int64_t index) {
     if (has_trailer()) PlaceTrailer(record);
     const Matrix3d M_canvas_early = composition_.M_canvas_view[Unit::kTractor];
     Compose(record);
-    if (has_trailer() && record.placed) UpdateStitching(record, M_canvas_early);
+    if (has_trailer() && record.placed) {
+        UpdateStitching(record, M_canvas_early);
+        if (detail_) UpdateDetail(record, runner);
+    }
     composition_.discrepancy = stitching_.discrepancy();
     return &composition_;
 }
@@ -149,9 +156,8 @@ void UnifiedVertexMotion::Stabilise(std::int64_t index, Unit unit) {
     composition_.stabilization[unit] = offset;
 }
 
-/// Not on a ring: there it is the parallax of a drive that is left, not shake.
 void UnifiedVertexMotion::UpdateViewOffset(const RigMotion& record, Unit unit) {
-    if (!options_.stabilize || canvas_.IsRing()) return;
+    if (!options_.stabilize) return;
     VertexField& offset = view_offset_[unit];
     offset = (kResidualKept * (offset - record.intra[unit].residual))
                  .cwiseMax(-kResidualBound_px)
@@ -206,10 +212,12 @@ void UnifiedVertexMotion::Compose(const RigMotion& record) {
     c.articulation = record.articulation;
 }
 
+Vector2d UnifiedVertexMotion::Moved(Unit unit, const Vector2d& view_px) const {
+    return view_px + Sample(Mesh(view(unit)), view_offset_[unit], view_px);
+}
+
 Vector2d UnifiedVertexMotion::OnCanvas(Unit unit, const Vector2d& view_px) const {
-    const Mesh mesh(view(unit));
-    const Vector2d moved = view_px + Sample(mesh, view_offset_[unit], view_px);
-    return canvas_.Pixel(composition_.M_canvas_view[unit] * view(unit).Ray(moved));
+    return canvas_.Pixel(composition_.M_canvas_view[unit] * view(unit).Ray(Moved(unit, view_px)));
 }
 
 void UnifiedVertexMotion::TakePairs(const InterFeatures& features) {
@@ -233,22 +241,31 @@ void UnifiedVertexMotion::UpdateStitching(const RigMotion& record, const Matrix3
         stitching_.Update(canvas_pairs_);
     }
     stitching_.Extend();
-    if (detail_) UpdateDetail(record);
 }
 
-void UnifiedVertexMotion::UpdateDetail(const RigMotion& record) {
-    detail_->Clear();
-    for (const Overlap overlap : kOverlaps) {
-        for (const ParallaxSample& sample : record.parallax[overlap]) {
-            const CanvasPair pair{OnCanvas(Unit::kTractor, sample.pair.tractor_px),
-                                  OnCanvas(Unit::kTrailer, sample.pair.trailer_px)};
-            if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < max_parallax_px_)
-                detail_->Add(pair, sample.weight);
-        }
-    }
-    detail_->Fit(stitching_.discrepancy());
+void UnifiedVertexMotion::UpdateDetail(const RigMotion& record, TaskRunner& runner) {
+    runner.Run(units(), [&](int i) {
+        const Unit unit = kUnits[static_cast<std::size_t>(i)];
+        on_canvas_[unit]->Update(composition_.M_canvas_view[unit]);
+    });
+    runner.Run(static_cast<int>(kOverlaps.size()), [&](int i) {
+        const Overlap overlap = kOverlaps[static_cast<std::size_t>(i)];
+        UpdateDetail(record.parallax[overlap], overlap);
+    });
     composition_.detail = detail_->detail();
     composition_.doubt_px = detail_->doubt_px();
+}
+
+void UnifiedVertexMotion::UpdateDetail(const ParallaxSamples& samples, Overlap overlap) {
+    detail_->Clear(overlap);
+    for (const ParallaxSample& sample : samples) {
+        const CanvasPair pair{
+            on_canvas_[Unit::kTractor]->At(Moved(Unit::kTractor, sample.pair.tractor_px)),
+            on_canvas_[Unit::kTrailer]->At(Moved(Unit::kTrailer, sample.pair.trailer_px))};
+        if (canvas_.Difference(pair.tractor_px, pair.trailer_px).norm() < max_parallax_px_)
+            detail_->Add(overlap, pair, sample.weight);
+    }
+    detail_->Fit(overlap, stitching_.discrepancy());
 }
 
 }  // namespace hitchview::algo

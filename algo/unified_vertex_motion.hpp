@@ -11,6 +11,7 @@
 #include "algo/rig_motion.hpp"
 #include "algo/stitching_motion_field.hpp"
 #include "algo/vertex_motion.hpp"
+#include "algo/view_on_canvas.hpp"
 
 namespace hitchview::algo {
 
@@ -40,15 +41,17 @@ class UnifiedVertexMotion final : public VertexMotion {
 
  private:
     void UpdateGuess();
-    const Composition* Emit(std::int64_t index);
+    const Composition* Emit(std::int64_t index, TaskRunner& runner);
     void Stabilise(std::int64_t index, Unit unit);
     void PlaceTrailer(const RigMotion& record);
     void UpdateViewOffset(const RigMotion& record, Unit unit);
-    void UpdateDetail(const RigMotion& record);
+    void UpdateDetail(const RigMotion& record, TaskRunner& runner);
+    void UpdateDetail(const ParallaxSamples& samples, Overlap overlap);
     void UpdateStitching(const RigMotion& record, const Eigen::Matrix3d& M_canvas_early);
     void TakePairs(const InterFeatures& features);
     void Compose(const RigMotion& record);
     [[nodiscard]] PathSmoother::Window Window(std::int64_t index, Unit unit) const;
+    [[nodiscard]] Eigen::Vector2d Moved(Unit unit, const Eigen::Vector2d& view_px) const;
     [[nodiscard]] Eigen::Vector2d OnCanvas(Unit unit, const Eigen::Vector2d& view_px) const;
     void LayOut();
 
@@ -69,7 +72,8 @@ class UnifiedVertexMotion final : public VertexMotion {
     double max_parallax_px_;
     double max_mesh_parallax_px_;
     StitchingMotionField stitching_;
-    std::unique_ptr<DetailField> detail_;  // ring with a trailer
+    std::unique_ptr<DetailField> detail_;               // ring with a trailer
+    PerUnit<std::unique_ptr<ViewOnCanvas>> on_canvas_;  // likewise
     PerUnit<std::unique_ptr<UnitSmoother>> smoother_;
     std::unique_ptr<PathSmoother> hitch_smoother_;
 

@@ -3,7 +3,7 @@
 namespace hitchview::algo {
 
 UnitAnalysis::UnitAnalysis(const UnitGeometry& geometry, const UnitAnalysisOptions& options)
-    : geometry_(&geometry),
+    : geometry_(geometry),
       view_(geometry, options.scale),
       early_(view_.width_px(), view_.height_px()),
       late_(view_.width_px(), view_.height_px()),
@@ -27,15 +27,15 @@ void UnitAnalysis::Analyse(const UnitFrames& frames, IntraMotion& motion) {
 /// motion of either.
 void UnitAnalysis::FindSights() {
     sights_.clear();
-    const Projection& picture = geometry_->view();
+    const Projection& picture = geometry_.view();
     if (!picture.IsRing()) return;
     for (const FeatureTracker::Track& track : tracks_) {
         const auto camera = view_.CameraAt(track.early_px);
         if (!camera || view_.CameraAt(track.late_px) != camera) continue;
         const SightLine early =
-            geometry_->SightOf(*camera, picture.Ray(view_.ToView(track.early_px)));
+            geometry_.SightOf(*camera, picture.Ray(view_.ToView(track.early_px)));
         const SightLine late =
-            geometry_->SightOf(*camera, picture.Ray(view_.ToView(track.late_px)));
+            geometry_.SightOf(*camera, picture.Ray(view_.ToView(track.late_px)));
         sights_.push_back({early.direction, late.direction, early.origin_m});
     }
 }

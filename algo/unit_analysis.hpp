@@ -35,7 +35,7 @@ class UnitAnalysis {
  private:
     void FindSights();
 
-    const UnitGeometry* geometry_;
+    UnitGeometry geometry_;
     SemiSurroundView view_;
     GreyPyramid early_;
     GreyPyramid late_;

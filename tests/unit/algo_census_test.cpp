@@ -17,7 +17,7 @@ cv::Mat1b RandomPicture(std::uint64_t seed) {
 
 Census Of(const cv::Mat1b& picture) {
     Census census(picture.cols, picture.rows);
-    census.Build(picture, 0, picture.cols - 1);
+    census.Build(picture, cv::Mat1b(picture.size(), std::uint8_t{1}), 0, picture.cols - 1, 1);
     return census;
 }
 
@@ -76,11 +76,28 @@ TEST(CensusTest, BuildsAgainTheColumnsAskedForAndLeavesTheOthers) {
     const Census before = Of(first);
     const Census after = Of(second);
     Census census = before;
-    census.Build(second, 10, 20);
+    census.Build(second, cv::Mat1b(second.size(), std::uint8_t{1}), 10, 20, 1);
     ForEachInside([&](int x, int y) {
         const Census& expected = x >= 10 && x <= 20 ? after : before;
         EXPECT_EQ(census.At(x, y), expected.At(x, y)) << x << " " << y;
     });
+}
+
+TEST(CensusTest, ThereIsNoSignatureAtTheBorderOrUnderTheMask) {
+    cv::Mat1b mask(24, 40, std::uint8_t{255});
+    mask(8, 20) = 0;
+    Census census(40, 24);
+    census.Build(RandomPicture(6), mask, 0, 40 - 1, 2);
+    EXPECT_EQ(census.At(20, 8), Census::kNone);
+    EXPECT_EQ(census.At(21, 8) & Census::kNone, 0U);
+    for (int x = 0; x < 40; ++x) {
+        EXPECT_EQ(census.At(x, 2), Census::kNone);
+        EXPECT_EQ(census.At(x, 24 - 2), Census::kNone);
+    }
+    for (int y = 0; y < 24; y += 2) {
+        EXPECT_EQ(census.At(2, y), Census::kNone);
+        EXPECT_EQ(census.At(40 - 3, y), Census::kNone);
+    }
 }
 
 }  // namespace

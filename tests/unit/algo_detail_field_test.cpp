@@ -23,7 +23,11 @@ class DetailFieldTest : public testing::Test {
         }
     }
     void Add(const Vector2d& at, const Vector2d& e, float weight) {
-        field_.Add({at - kKappa * e, at + (1 - kKappa) * e}, weight);
+        const Overlap overlap = at.x() < canvas_.Centre().x() ? Overlap::kLeft : Overlap::kRight;
+        field_.Add(overlap, {at - kKappa * e, at + (1 - kKappa) * e}, weight);
+    }
+    void Fit() {
+        for (const Overlap overlap : kOverlaps) field_.Fit(overlap, mesh_);
     }
     /// With the mesh's part.
     [[nodiscard]] Vector2d At(int row, int col) const {
@@ -49,7 +53,7 @@ Truth Wall(double from_px, double sign) {
 TEST_F(DetailFieldTest, FollowsAWideNearThingInEitherOverlap) {
     Show({160, 0}, {440, 176}, Wall(240, 1));
     Show({600, 0}, {880, 176}, Wall(680, -1));
-    field_.Fit(mesh_);
+    Fit();
     for (int row = 2; row < 20; ++row) {
         for (int col = 36; col < 41; ++col) {
             EXPECT_LT((At(row, col) - Vector2d(48, -2)).norm(), 0.5) << row << " " << col;
@@ -70,7 +74,7 @@ TEST_F(DetailFieldTest, WhatTheMeshSaysAlreadyIsNoDetail) {
             mesh_.col(Mesh::Index(row, col)) = smooth(mesh.Vertex(row, col)).cast<float>();
     }
     Show({160, 0}, {440, 176}, [&](const Vector2d& p) { return Sample(mesh, mesh_, p); });
-    field_.Fit(mesh_);
+    Fit();
     for (int row = 2; row < 20; ++row) {
         for (int col = 22; col < 54; ++col)
             EXPECT_LT(field_.detail().at(row, col).norm(), 0.5F) << row << " " << col;
@@ -82,7 +86,7 @@ TEST_F(DetailFieldTest, IgnoresAThinNearThingThatWouldFoldAndDoubtsItsPlace) {
         return Vector2d(p.x() >= 296 && p.x() < 304 ? 48 : 0, 0);
     };
     Show({160, 0}, {440, 176}, pole);
-    field_.Fit(mesh_);
+    Fit();
     for (int row = 2; row < 20; ++row) {
         for (int col = 22; col < 54; ++col)
             EXPECT_LT(At(row, col).norm(), 0.5) << row << " " << col;
@@ -99,7 +103,7 @@ TEST_F(DetailFieldTest, DoubtIsLargeWhereSamplesDisagreeAndUnknownWhereThereAreN
         return Vector2d(disagree ? 30 * (i++ % 3) - 30 : 0, 0);
     };
     Show({160, 0}, {440, 176}, torn);
-    field_.Fit(mesh_);
+    Fit();
     const DetailFieldOptions options;
     for (int row = 2; row < 20; ++row) {
         for (int col = 37; col < 41; ++col) {
@@ -120,7 +124,7 @@ TEST_F(DetailFieldTest, AHoleTakesWhatLiesAroundItButStaysInDoubt) {
     Show({328, 0}, {440, 176}, flat);
     Show({280, 0}, {328, 64}, flat);
     Show({280, 112}, {328, 176}, flat);
-    field_.Fit(mesh_);
+    Fit();
     EXPECT_NEAR(At(11, 38).x(), 9, 1.5);
     EXPECT_EQ(Doubt(11, 38), DetailFieldOptions{}.unknown_px);
     EXPECT_LT(Doubt(11, 28), 0.5);
@@ -131,16 +135,16 @@ TEST_F(DetailFieldTest, ASampleThatTellsLittleCountsLess) {
     const auto flat = [](const Vector2d&) { return Vector2d(0, 0); };
     Show({160, 0}, {440, 176}, flat);
     for (int i = 0; i < 6; ++i) Add(place + Vector2d(0.1 * i, 0), {6, 0}, 0.02F);
-    field_.Fit(mesh_);
+    Fit();
     EXPECT_LT(At(11, 38).norm(), 0.3);
 }
 
 TEST_F(DetailFieldTest, WhenItIsClearedNothingIsLeft) {
     Show({160, 0}, {440, 176}, Wall(240, 1));
-    field_.Fit(mesh_);
+    Fit();
     ASSERT_GT(At(10, 38).norm(), 20);
-    field_.Clear();
-    field_.Fit(mesh_);
+    for (const Overlap overlap : kOverlaps) field_.Clear(overlap);
+    Fit();
     for (int row = 0; row < field_.detail().rows(); ++row) {
         for (int col = 0; col < field_.detail().cols(); ++col) {
             EXPECT_EQ(field_.detail().at(row, col), Vector2f::Zero());
@@ -154,7 +158,7 @@ TEST_F(DetailFieldTest, PairsBesideTheCanvasAndTooManyOnOnePlaceAreLeftOut) {
     Add({300, 400}, {5, 5}, 1);
     Show({200, 40}, {400, 140}, [](const Vector2d&) { return Vector2d(3, 0); });
     for (int i = 0; i < 100; ++i) Add({300, 88}, {33, 0}, 1);
-    field_.Fit(mesh_);
+    Fit();
     EXPECT_NEAR(At(8, 30).x(), 3, 0.2);
     EXPECT_LT(Doubt(8, 30), 0.5);
 }

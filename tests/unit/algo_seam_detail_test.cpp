@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "algo/seam_detail.hpp"
+#include "algo/task_runner.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -29,7 +30,8 @@ class SeamDetailTest : public testing::Test {
         seams_.Follow({});
     }
     void Fade(const SeamDetailOptions& options = {}) {
-        FadeFromSeams(Mesh(canvas_), mesh_, detail_, seams_, options, shown_);
+        SerialRunner runner;
+        FadeFromSeams(Mesh(canvas_), mesh_, detail_, seams_, options, runner, shown_);
     }
     void FillDetail(std::uint64_t seed, float most_px) {
         cv::RNG random(seed);
