@@ -79,8 +79,8 @@ StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double ka
     StitchingMotionFieldOptions options;
     options.kappa = kappa;
     options.fit.fade_px = 0.055 * canvas.width_px;
-    options.max_stretch = kMaxStretch / std::max(kappa, 1 - kappa);
     if (canvas.IsRing()) {  // samples are dense, and the ground tilts with each unit
+        options.max_stretch = kMaxStretch / std::max(kappa, 1 - kappa);
         options.fit.memory = 0.5;
         options.fit.change_px = 1.5;
         options.fit.outlier_px = 3;
