@@ -59,8 +59,8 @@ OverlapParallax::OverlapParallax(const PerUnit<UnitGeometry>& geometry,
       bias_(static_cast<std::size_t>(options.labels)),
       places_(bias_.size()),
       max_cols_(NodesOver(end_px_ - first_px_, kPitch_px)),
-      matching_(NodesOver(views[Unit::kTractor]->height_px(), kPitch_px), max_cols_, options.labels,
-                options.matching),
+      matching_(NodesOver(views[Unit::kTractor]->height_px(), kRowPitch_px), max_cols_,
+                options.labels, options.matching),
       matches_(static_cast<std::size_t>(matching_.rows() * max_cols_)) {
     differences_.fill(std::vector<std::uint16_t>(bias_.size()));
     const double surface = options_.beyond_per_m / Span_per_m() * (options_.labels - 1);
@@ -182,7 +182,7 @@ std::pair<int, int> OverlapParallax::TrailerColumns() const {
 void OverlapParallax::Compare(const PerUnit<MatchView>& views) {
     const cv::Mat1b& picture = views[Unit::kTractor].pyramid->level(0);
     census_[Unit::kTractor].Build(picture, *views[Unit::kTractor].mask, left_px_, NodeX(cols() - 1),
-                                  kPitch_px);
+                                  kRowPitch_px);
     const auto [first, last] = TrailerColumns();
     census_[Unit::kTrailer].Build(views[Unit::kTrailer].pyramid->level(0),
                                   *views[Unit::kTrailer].mask, first, last, 1);

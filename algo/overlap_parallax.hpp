@@ -40,7 +40,8 @@ struct ParallaxMatch {
 /// at construction; an object belongs to one thread at a time.
 class OverlapParallax {
  public:
-    static constexpr int kPitch_px = 2;  ///< of the nodes, analysis px
+    static constexpr int kPitch_px = 2;     ///< of the nodes in a row, analysis px
+    static constexpr int kRowPitch_px = 3;  ///< of the rows of nodes
 
     /// Borrows the views.
     OverlapParallax(const PerUnit<UnitGeometry>& geometry,
@@ -96,7 +97,7 @@ class OverlapParallax {
         return options_.beyond_per_m + 1 / options_.nearest_m;
     }
     [[nodiscard]] int NodeX(int col) const { return left_px_ + kPitch_px * col; }
-    static int NodeY(int row) { return kPitch_px * row; }
+    static int NodeY(int row) { return kRowPitch_px * row; }
     [[nodiscard]] std::size_t Index(int row, int col) const {
         return static_cast<std::size_t>(row * max_cols_ + col);
     }

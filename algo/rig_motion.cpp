@@ -109,7 +109,7 @@ void RigMotionEstimator::MatchUnits(const MatchGuess& guess, TaskRunner& runner,
     UpdateSeams(motion);
     motion.M_tractor_trailer = placement_->M_tractor_trailer();
     motion.placed = placement_->acquired();
-    if (articulation_) motion.articulation = articulation_->Step(motion.intra, motion.inter);
+    if (articulation_) motion.articulation = articulation_->Step(motion.intra, motion.dense);
     ++matched_;
 }
 
@@ -129,20 +129,21 @@ void RigMotionEstimator::Guide(const MatchGuess& guess, TaskRunner& runner, RigM
 void RigMotionEstimator::GuideOverlap(const MatchGuess& guess, Overlap overlap, RigMotion& motion) {
     PerUnit<MatchView> views{
         {analysis_[Unit::kTractor]->match_view(), analysis_[Unit::kTrailer]->match_view()}};
+    motion.candidates[overlap] = 0;
+    if (canvas_.IsRing()) {
+        MatchDensely(views, overlap, motion);
+        return;
+    }
     const PerUnit<Guidance::Side> sides{
         {Guidance::Side{&analysis_[Unit::kTractor]->view(), tractor_view_, guess.M_canvas_tractor},
          Guidance::Side{
              &analysis_[Unit::kTrailer]->view(), *trailer_view_,
              guess.M_shown_placed * guess.M_canvas_tractor * placement_->M_tractor_trailer()}}};
     ViewPairs& pairs = view_pairs_[overlap];
-    int& candidates = motion.candidates[overlap];
-    candidates = 0;
-    matcher_->Guide(views, Guidance(canvas_, sides, guess.discrepancy, overlap, candidates), pairs);
+    matcher_->Guide(
+        views, Guidance(canvas_, sides, guess.discrepancy, overlap, motion.candidates[overlap]),
+        pairs);
     ToViews(pairs, motion.inter[overlap]);
-    if (canvas_.IsRing()) {
-        MatchDensely(views, overlap, motion);
-        return;
-    }
     int asked = 0;
     views[Unit::kTractor].features = lattice_;
     views[Unit::kTrailer].features = {};
@@ -160,8 +161,9 @@ void RigMotionEstimator::MatchDensely(const PerUnit<MatchView>& views, Overlap o
             if (!match) continue;
             const InterFeature pair = ToViews(match->pair);
             motion.parallax[overlap].push_back({pair, match->weight});
-            const bool chosen = row % kPlacementStep == 0 && col % kPlacementStep == 0;
-            if (chosen && match->clear && match->weight > kPlacementWeight)
+            if (row % kPlacementStep != 0 || col % kPlacementStep != 0) continue;
+            ++motion.candidates[overlap];
+            if (match->clear && match->weight > kPlacementWeight)
                 motion.dense[overlap].push_back(pair);
         }
     }
