@@ -9,9 +9,7 @@ namespace hitchview::algo {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector2d;
 using Eigen::Vector2f;
-using Eigen::Vector3d;
 
 /// A searched overlap is tried this often; a descriptor match costs more than a guided one.
 constexpr int kAcquireEvery = 6;
@@ -46,8 +44,9 @@ RigMotionEstimator::RigMotionEstimator(const Projection& canvas,
                                                       ClassicalMatcherOptions{});
         placement_ = std::make_unique<TrailerPlacement>(tractor_view_, *trailer_view_,
                                                         PlacementOptions(canvas, a.scale()));
-        LayLattice();
-        if (canvas.IsRing()) {
+        if (!canvas.IsRing()) {
+            LayLattice();
+        } else {
             for (const Overlap overlap : kOverlaps) {
                 parallax_[overlap] = std::make_unique<OverlapParallax>(
                     PerUnit<UnitGeometry>{{*geometry[Unit::kTractor], *geometry[Unit::kTrailer]}},
@@ -79,9 +78,9 @@ bool RigMotionEstimator::Prime(const RigFrames& frames, TaskRunner& runner) {
 }
 
 void RigMotionEstimator::Estimate(const RigFrames& frames, const MatchGuess& guess,
-                                  TaskRunner& runner, RigMotion& motion) {
+                                  TaskRunner& runner, RigMotion& motion, RigParallax* parallax) {
     Analyse(frames, runner, motion);
-    if (placement_ && stitch_) MatchUnits(guess, runner, motion);
+    if (placement_ && stitch_) MatchUnits(guess, runner, motion, parallax);
 }
 
 void RigMotionEstimator::Analyse(const RigFrames& frames, TaskRunner& runner, RigMotion& motion) {
@@ -92,20 +91,20 @@ void RigMotionEstimator::Analyse(const RigFrames& frames, TaskRunner& runner, Ri
     });
 }
 
-void RigMotionEstimator::MatchUnits(const MatchGuess& guess, TaskRunner& runner,
-                                    RigMotion& motion) {
+void RigMotionEstimator::MatchUnits(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion,
+                                    RigParallax* parallax) {
     placement_->Predict(motion.intra);
     for (const Overlap overlap : kOverlaps) {
         motion.inter[overlap].clear();
         motion.dense[overlap].clear();
-        motion.parallax[overlap].clear();
+        if (parallax != nullptr) (*parallax)[overlap].clear();
     }
     const bool lost = !placement_->acquired() || LongUnmatched();
     if (lost && matched_ % kAcquireEvery == 0) {
         AcquireTrailer(motion);
         for (const Overlap overlap : kOverlaps) motion.inter[overlap].clear();
     }
-    if (placement_->acquired()) Guide(guess, runner, motion);
+    if (placement_->acquired()) Guide(guess, runner, motion, parallax);
     UpdateSeams(motion);
     motion.M_tractor_trailer = placement_->M_tractor_trailer();
     motion.placed = placement_->acquired();
@@ -119,21 +118,26 @@ bool RigMotionEstimator::LongUnmatched() const {
                        [](int frames) { return frames >= kCoastFrames; });
 }
 
-void RigMotionEstimator::Guide(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion) {
-    runner.Run(static_cast<int>(kOverlaps.size()),
-               [&](int i) { GuideOverlap(guess, kOverlaps[static_cast<std::size_t>(i)], motion); });
-    // Corners gather on near things; the lattice covers what is far just as well.
+void RigMotionEstimator::Guide(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion,
+                               RigParallax* parallax) {
+    runner.Run(static_cast<int>(kOverlaps.size()), [&](int i) {
+        const Overlap overlap = kOverlaps[static_cast<std::size_t>(i)];
+        motion.candidates[overlap] = 0;
+        if (canvas_.IsRing()) {
+            MatchDensely(overlap, motion, parallax != nullptr ? &(*parallax)[overlap] : nullptr);
+        } else {
+            GuideOverlap(guess, overlap, motion);
+        }
+    });
     placement_->Correct(canvas_.IsRing() ? motion.dense : motion.inter);
 }
 
+PerUnit<MatchView> RigMotionEstimator::MatchViews() const {
+    return {{analysis_[Unit::kTractor]->match_view(), analysis_[Unit::kTrailer]->match_view()}};
+}
+
 void RigMotionEstimator::GuideOverlap(const MatchGuess& guess, Overlap overlap, RigMotion& motion) {
-    PerUnit<MatchView> views{
-        {analysis_[Unit::kTractor]->match_view(), analysis_[Unit::kTrailer]->match_view()}};
-    motion.candidates[overlap] = 0;
-    if (canvas_.IsRing()) {
-        MatchDensely(views, overlap, motion);
-        return;
-    }
+    PerUnit<MatchView> views = MatchViews();
     const PerUnit<Guidance::Side> sides{
         {Guidance::Side{&analysis_[Unit::kTractor]->view(), tractor_view_, guess.M_canvas_tractor},
          Guidance::Side{
@@ -151,16 +155,16 @@ void RigMotionEstimator::GuideOverlap(const MatchGuess& guess, Overlap overlap, 
     ToViews(pairs, motion.dense[overlap]);
 }
 
-void RigMotionEstimator::MatchDensely(const PerUnit<MatchView>& views, Overlap overlap,
-                                      RigMotion& motion) {
+void RigMotionEstimator::MatchDensely(Overlap overlap, RigMotion& motion,
+                                      ParallaxSamples* samples) {
     OverlapParallax& parallax = *parallax_[overlap];
-    parallax.Match(views, placement_->M_tractor_trailer());
+    parallax.Match(MatchViews(), placement_->M_tractor_trailer());
     for (int row = 0; row < parallax.rows(); ++row) {
         for (int col = 0; col < parallax.cols(); ++col) {
             const auto& match = parallax.At(row, col);
             if (!match) continue;
             const InterFeature pair = ToViews(match->pair);
-            motion.parallax[overlap].push_back({pair, match->weight});
+            if (samples != nullptr) samples->push_back({pair, match->weight});
             if (row % kPlacementStep != 0 || col % kPlacementStep != 0) continue;
             ++motion.candidates[overlap];
             if (match->clear && match->weight > kPlacementWeight)
@@ -191,8 +195,7 @@ void RigMotionEstimator::LayLattice() {
 }
 
 bool RigMotionEstimator::AcquireTrailer(RigMotion& motion) {
-    const PerUnit<MatchView> views{
-        {analysis_[Unit::kTractor]->match_view(), analysis_[Unit::kTrailer]->match_view()}};
+    const PerUnit<MatchView> views = MatchViews();
     ViewPairs& pairs = view_pairs_[Overlap::kLeft];
     const SemiSurroundView& tractor = analysis_[Unit::kTractor]->view();
     const SemiSurroundView& trailer = analysis_[Unit::kTrailer]->view();

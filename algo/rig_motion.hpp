@@ -16,9 +16,8 @@ namespace hitchview::algo {
 /// What one frame set tells of the motion within the units and between them.
 struct RigMotion {
     PerUnit<IntraMotion> intra;
-    PerOverlap<InterFeatures> inter;       ///< px of the views
-    PerOverlap<InterFeatures> dense;       ///< likewise, spread evenly: for the stitching field
-    PerOverlap<ParallaxSamples> parallax;  ///< ring only: as dense as it gets, px of the views
+    PerOverlap<InterFeatures> inter;  ///< px of the views
+    PerOverlap<InterFeatures> dense;  ///< likewise, spread evenly: for the stitching field
     Eigen::Matrix3d M_tractor_trailer = Eigen::Matrix3d::Identity();
     bool placed = false;  ///< false: M_tractor_trailer means nothing
     PerOverlap<SeamState> seams{{SeamState::kNoOverlap, SeamState::kNoOverlap}};
@@ -27,6 +26,9 @@ struct RigMotion {
     PerUnit<int> features;
     std::optional<Articulation> articulation;  ///< ring only
 };
+
+/// Ring only: pairs of one frame set, as dense as it gets, px of the views. Large.
+using RigParallax = PerOverlap<ParallaxSamples>;
 
 /// Where both views are thought to lie on the canvas when features are matched between them.
 struct MatchGuess {
@@ -49,9 +51,9 @@ class RigMotionEstimator {
     /// Before the first Estimate: looks for the trailer in one frame set, from nothing. True if it
     /// was found or need not be.
     bool Prime(const RigFrames& frames, TaskRunner& runner);
-    /// The frame set after the one before.
+    /// The frame set after the one before. `parallax`: null if nobody asks for it.
     void Estimate(const RigFrames& frames, const MatchGuess& guess, TaskRunner& runner,
-                  RigMotion& motion);
+                  RigMotion& motion, RigParallax* parallax = nullptr);
     /// Forgets everything that crosses frames; the placement stays.
     void Reset();
 
@@ -63,12 +65,15 @@ class RigMotionEstimator {
 
  private:
     void Analyse(const RigFrames& frames, TaskRunner& runner, RigMotion& motion);
-    void MatchUnits(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion);
+    void MatchUnits(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion,
+                    RigParallax* parallax);
     bool AcquireTrailer(RigMotion& motion);
     [[nodiscard]] bool LongUnmatched() const;
-    void Guide(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion);
+    void Guide(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion,
+               RigParallax* parallax);
     void GuideOverlap(const MatchGuess& guess, Overlap overlap, RigMotion& motion);
-    void MatchDensely(const PerUnit<MatchView>& views, Overlap overlap, RigMotion& motion);
+    void MatchDensely(Overlap overlap, RigMotion& motion, ParallaxSamples* samples);
+    [[nodiscard]] PerUnit<MatchView> MatchViews() const;
     [[nodiscard]] InterFeature ToViews(const ViewPair& pair) const;
     void LayLattice();
     void ToViews(const ViewPairs& pairs, InterFeatures& features) const;
@@ -89,7 +94,7 @@ class RigMotionEstimator {
     PerOverlap<int> frames_unmatched_;
     std::int64_t matched_ = 0;  // frame sets
     PerOverlap<ViewPairs> view_pairs_;
-    std::vector<Eigen::Vector2f> lattice_;  // px of the tractor's analysis view
+    std::vector<Eigen::Vector2f> lattice_;  // plane only: px of the tractor's analysis view
     std::unique_ptr<RigMotion> primed_;
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algo/smooth_step.hpp"
+
 namespace hitchview::algo {
 namespace {
 
@@ -10,8 +12,7 @@ using Eigen::Vector2f;
 
 /// 1 up to the core, 0 beyond the fade.
 double ShareAt(double distance_px, const SeamDetailOptions& options) {
-    const double t = std::clamp((distance_px - options.core_px) / options.fade_px, 0.0, 1.0);
-    return 1 - t * t * (3 - 2 * t);
+    return 1 - SmoothStep((distance_px - options.core_px) / options.fade_px);
 }
 
 class RowFader {

@@ -39,6 +39,7 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
     }
     if (has_trailer()) {
         if (canvas.IsRing()) {
+            parallax_ = std::make_unique<std::array<RigParallax, kRecords>>();
             detail_ =
                 std::make_unique<DetailField>(canvas, DetailFieldOptions{.kappa = options.kappa});
             for (const Unit unit : kUnits)
@@ -54,6 +55,9 @@ UnifiedVertexMotion::~UnifiedVertexMotion() = default;
 
 RigMotion& UnifiedVertexMotion::At(std::int64_t index) {
     return (*records_)[static_cast<std::size_t>(index % kRecords)];
+}
+RigParallax* UnifiedVertexMotion::ParallaxAt(std::int64_t index) {
+    return parallax_ ? &(*parallax_)[static_cast<std::size_t>(index % kRecords)] : nullptr;
 }
 const RigMotion& UnifiedVertexMotion::At(std::int64_t index) const {
     return (*records_)[static_cast<std::size_t>(index % kRecords)];
@@ -85,7 +89,7 @@ bool UnifiedVertexMotion::Prime(const RigFrames& frames, TaskRunner& runner) {
 
 const Composition* UnifiedVertexMotion::Step(const RigFrames& frames, TaskRunner& runner) {
     UpdateGuess();
-    estimator_.Estimate(frames, guess_, runner, At(analysed_));
+    estimator_.Estimate(frames, guess_, runner, At(analysed_), ParallaxAt(analysed_));
     ++analysed_;
     if (analysed_ - emitted_ <= options_.lookahead_frames) return nullptr;
     return Emit(emitted_++, runner);
@@ -119,7 +123,7 @@ const Composition* UnifiedVertexMotion::Emit(std::int64_t index, TaskRunner& run
     Compose(record);
     if (has_trailer() && record.placed) {
         UpdateStitching(record, M_canvas_early);
-        if (detail_) UpdateDetail(record, runner);
+        if (detail_) UpdateDetail(*ParallaxAt(index), runner);
     }
     composition_.discrepancy = stitching_.discrepancy();
     return &composition_;
@@ -243,14 +247,14 @@ void UnifiedVertexMotion::UpdateStitching(const RigMotion& record, const Matrix3
     stitching_.Extend();
 }
 
-void UnifiedVertexMotion::UpdateDetail(const RigMotion& record, TaskRunner& runner) {
+void UnifiedVertexMotion::UpdateDetail(const RigParallax& parallax, TaskRunner& runner) {
     runner.Run(units(), [&](int i) {
         const Unit unit = kUnits[static_cast<std::size_t>(i)];
         on_canvas_[unit]->Update(composition_.M_canvas_view[unit]);
     });
     runner.Run(static_cast<int>(kOverlaps.size()), [&](int i) {
         const Overlap overlap = kOverlaps[static_cast<std::size_t>(i)];
-        UpdateDetail(record.parallax[overlap], overlap);
+        UpdateDetail(parallax[overlap], overlap);
     });
     composition_.detail = detail_->detail();
     composition_.doubt_px = detail_->doubt_px();

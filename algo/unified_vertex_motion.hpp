@@ -45,7 +45,8 @@ class UnifiedVertexMotion final : public VertexMotion {
     void Stabilise(std::int64_t index, Unit unit);
     void PlaceTrailer(const RigMotion& record);
     void UpdateViewOffset(const RigMotion& record, Unit unit);
-    void UpdateDetail(const RigMotion& record, TaskRunner& runner);
+    void UpdateDetail(const RigParallax& parallax, TaskRunner& runner);
+    [[nodiscard]] RigParallax* ParallaxAt(std::int64_t index);
     void UpdateDetail(const ParallaxSamples& samples, Overlap overlap);
     void UpdateStitching(const RigMotion& record, const Eigen::Matrix3d& M_canvas_early);
     void TakePairs(const InterFeatures& features);
@@ -88,7 +89,8 @@ class UnifiedVertexMotion final : public VertexMotion {
 
     static constexpr int kRecords = 16;
     std::unique_ptr<std::array<RigMotion, kRecords>> records_;
-    std::int64_t analysed_ = 0;  // frame sets seen
+    std::unique_ptr<std::array<RigParallax, kRecords>> parallax_;  // ring with a trailer
+    std::int64_t analysed_ = 0;                                    // frame sets seen
     std::int64_t emitted_ = 0;
     CanvasPairs canvas_pairs_;
     Composition composition_;

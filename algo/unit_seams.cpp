@@ -2,16 +2,13 @@
 
 #include <algorithm>
 
+#include "algo/smooth_step.hpp"
+
 namespace hitchview::algo {
 namespace {
 
 /// A column belongs to the overlap if this share of its corners is covered by both units.
 constexpr double kOverlapShare = 0.6;
-
-double SmoothStep(double t) {
-    const double s = std::clamp(t, 0.0, 1.0);
-    return s * s * (3 - 2 * s);
-}
 
 }  // namespace
 
