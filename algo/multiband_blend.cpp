@@ -25,9 +25,10 @@ int StepAt(const ComposedMap& map, int source, int row, int col) {
     const ComposedMap::Corner& beside =
         map.corner(source, row, col < map.block_cols() ? col + 1 : col - 1);
     if (!beside.sees) return 1;
-    const float block_px = std::hypot(beside.x - here.x, beside.y - here.y);
-    return std::clamp(static_cast<int>(std::lround(block_px * kSampleStep / ComposedMap::kBlock)),
-                      1, 2 * ComposedMap::kBlock);
+    const float moved_px = std::hypot(beside.x - here.x, beside.y - here.y);
+    return std::clamp(
+        static_cast<int>(std::lround(moved_px * kSampleStep / static_cast<float>(map.block_px()))),
+        1, 2 * map.block_px());
 }
 
 /// Mean of kN x kN values round (x, y), of the nearest ones where the square reaches outside.

@@ -27,12 +27,15 @@ double MedianMs(int times, Work&& work) {
 
 }  // namespace
 
-double MemcpyMs(std::size_t bytes) {
-    std::vector<unsigned char> from(bytes, 1);
-    std::vector<unsigned char> to(bytes, 2);
+double MemcpyMs(const BenchFrames& frames, std::size_t panorama_bytes) {
+    std::vector<std::uint8_t> pictures(frames.BytesPerSet());
+    const std::vector<std::uint8_t> panorama(panorama_bytes, 1);
+    std::vector<std::uint8_t> copy(panorama_bytes);
+    int set = 0;
     return MedianMs(31, [&] {
-        std::memcpy(to.data(), from.data(), bytes);
-        asm volatile("" : : "r"(to.data()) : "memory");
+        frames.CopySet(set++ % BenchFrames::kSets, pictures);
+        std::memcpy(copy.data(), panorama.data(), panorama_bytes);
+        asm volatile("" : : "r"(pictures.data()), "r"(copy.data()) : "memory");
     });
 }
 

@@ -78,6 +78,14 @@ FrameSet BenchFrames::Set(int index, hal::Instant at) {
     return set;
 }
 
+void BenchFrames::CopySet(int set, std::span<std::uint8_t> to) const {
+    std::uint8_t* out = to.data();
+    for (const Picture& picture : sets_[static_cast<std::size_t>(set)]) {
+        std::memcpy(out, picture.bytes.data(), picture.bytes.size());
+        out += picture.bytes.size();
+    }
+}
+
 std::size_t BenchFrames::BytesPerSet() const {
     return sets_[0].size() * hal::FrameBytes(format_);
 }

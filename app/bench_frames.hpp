@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "algo/task_runner.hpp"
@@ -22,6 +23,8 @@ class BenchFrames final : private hal::FrameOwner {
     /// Set number `index` >= 0, said to be captured at `at`. Must not outlive this.
     FrameSet Set(int index, hal::Instant at);
     [[nodiscard]] std::size_t BytesPerSet() const;
+    /// The bytes of all pictures of set 0..kSets - 1, one after another.
+    void CopySet(int set, std::span<std::uint8_t> to) const;
 
  private:
     void DoReturn(int /*slot*/) override {}
