@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A narrow overlap needs pixels: a described patch is 36 px wide, its surroundings included.
+/// A narrow overlap needs pixels: a patch that is described is 36 px wide.
 double AnalysisScale(const Projection& view, double overlap_rad) {
     if (!view.IsRing()) return view.width_px > 960 ? 0.5 : 1.0;
     const double wanted_px = overlap_rad < 20 * kDegree ? 2048 : 1024;

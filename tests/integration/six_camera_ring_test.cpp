@@ -212,7 +212,7 @@ TEST_F(SixCameraRingTest, BothNarrowOverlapsLock) {
 
 TEST_F(SixCameraRingTest, ItsJointsCloseAsFarAsNearThingsAllow) {
     // 11.4 px are a degree; cameras half a metre apart see a thing 5 m away 6 degrees apart. Where
-    // units meet, the pictures say what is where; calibration alone leaves 13 and 7 px.
+    // units meet, the pictures say what is where; calibration alone leaves 11 and 6 px.
     constexpr double kParallax_px = 20;
     constexpr double kMatched_px = 6.5;
     int measured = 0;
