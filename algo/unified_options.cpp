@@ -97,6 +97,7 @@ SeamOptions SeamOptionsOf(const Projection& canvas) {
         options.path.least_win = 0.05F;
         options.path.least_gain = 0.3F;
         options.path.glide_px = 16;
+        options.path.dearest_way = 30;
     }
     return options;
 }
