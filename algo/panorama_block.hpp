@@ -14,16 +14,19 @@ using Corners = std::array<float, 4>;
 
 /// One camera's part in a block of the panorama.
 struct BlockSource {
-    CameraSampler camera;
+    const CameraSampler* camera;
     Corners x;  ///< where the camera is read, px
     Corners y;
     Corners weight;
-    std::array<Corners, 3> shift{};  ///< added to luma, u and v
+    std::array<Corners, 3> shift;  ///< added to luma, u and v; only if `shifted`
+    bool shifted;
 
-    /// The whole block lies inside the camera's picture: its four corners do.
-    [[nodiscard]] bool SeesAll() const;
-    /// The shift is too small to show.
-    [[nodiscard]] bool IsAsTaken() const;
+    /// The whole block lies inside the camera's picture, `margin_px` from its edge: its four
+    /// corners do.
+    [[nodiscard]] bool SeesAll(float margin_px = 0) const;
+    /// The vector kernel can read the block: it lies inside the picture and is not reduced too
+    /// much.
+    [[nodiscard]] bool SuitsKernel() const;
 };
 
 /// A square of ComposedMap::kBlock pixels of the panorama, and what is seen in it; between its
@@ -41,7 +44,11 @@ struct PanoramaBlock {
         return sources.size() == 1 && !camera_missing && sources[0].SeesAll();
     }
     /// Makes the pixels of the block.
-    void Render(NoData no_data, const PanoramaPlanes& out) const;
+    void Render(NoData no_data, const PanoramaPlanes& out);
+
+ private:
+    [[nodiscard]] bool SuitsKernel() const;
+    bool NormalizeWeights();
 };
 
 }  // namespace hitchview::algo
