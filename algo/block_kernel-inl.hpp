@@ -34,37 +34,61 @@ inline constexpr int kPlaceBits = 12;
 inline constexpr int kSampleBits = 7;
 inline constexpr int kLevelBits = 6;
 
-/// Where the rows of a block are read along one axis: window[r] + first[r] + i * step[r], the
-/// latter two in units of 1 << -kPlaceBits px.
-struct Axis {
-    HWY_ALIGN std::uint16_t first[kBlockLanes];
-    HWY_ALIGN std::uint16_t step[kBlockLanes];
-    std::int32_t window[kBlockLanes];  ///< first sample that is loaded
-    std::int32_t count[kBlockLanes];   ///< samples that are needed, at least one
-};
+HWY_ALIGN inline constexpr std::int32_t kOdd[kBlockLanes] = {1, 3, 5, 7, 9, 11, 13, 15};
 
-/// `least_count`: samples in a window; it lies inside the picture's `samples`.
-template <int kSide>
-HWY_INLINE void PlaceRows(const Corners& corners, int samples, int least_count, Axis& axis) {
+/// Windows inside the picture's `samples`. kEnough: least_count holds whatever the block needs;
+/// otherwise as many as it needs, if those are more.
+template <int kSide, bool kEnough>
+HWY_INLINE void PlaceRows(const Corners& corners, int samples, int least_count, WindowAxis& axis) {
+    constexpr int kLogSide = kSide == 8 ? 3 : 2;
+    const hn::CappedTag<std::int32_t, kSide> d;
+    const hn::Rebind<std::uint16_t, decltype(d)> du16;
+    const hn::Rebind<std::int16_t, decltype(d)> d16;
     std::int32_t fixed[4];
     for (std::size_t k = 0; k < 4; ++k)
         fixed[k] = static_cast<std::int32_t>(corners[k] * (1 << kPlaceBits) + 0.5F);
-    constexpr int kGain = kBlockLanes / kSide;
-    for (int r = 0; r < kSide; ++r) {
-        // 4 more fractional bits: exact.
-        const std::int32_t down = (2 * r + 1) * kGain;
-        const std::int32_t left = (fixed[0] << 4) + (fixed[2] - fixed[0]) * down;
-        const std::int32_t right = (fixed[1] << 4) + (fixed[3] - fixed[1]) * down;
-        const std::int32_t first = (left + (((right - left) * kGain) >> 4) + 8) >> 4;
-        const std::int32_t step = ((right - left) / kSide + 8) >> 4;
-        const std::int32_t last = first + (kSide - 1) * step;
-        const std::int32_t lowest = std::min(first, last) >> kPlaceBits;
-        const std::int32_t highest = std::max(first, last) >> kPlaceBits;
-        axis.window[r] = std::min(lowest, samples - least_count);
-        axis.count[r] = std::min(highest + 2, samples) - axis.window[r];
-        axis.first[r] = static_cast<std::uint16_t>(first - (axis.window[r] << kPlaceBits));
-        axis.step[r] = static_cast<std::uint16_t>(step);
+    HWY_ALIGN std::int32_t firsts[kSide];
+    auto widest = hn::Zero(d);
+    const auto half = hn::Set(d, 8);  // of the 4 more fractional bits that make all this exact
+    for (int r = 0; r < kSide; r += static_cast<int>(hn::Lanes(d))) {
+        const auto down = hn::ShiftLeft<3 - kLogSide>(hn::Load(d, kOdd + r));
+        const auto left =
+            hn::Add(hn::Set(d, fixed[0] << 4), hn::Mul(hn::Set(d, fixed[2] - fixed[0]), down));
+        const auto right =
+            hn::Add(hn::Set(d, fixed[1] << 4), hn::Mul(hn::Set(d, fixed[3] - fixed[1]), down));
+        const auto across = hn::Sub(right, left);
+        const auto half_step = hn::ShiftRight<kLogSide + 1>(across);
+        const auto first = hn::ShiftRight<4>(hn::Add(hn::Add(left, half_step), half));
+        const auto step = hn::ShiftRight<4>(hn::Add(hn::ShiftRight<kLogSide>(across), half));
+        const auto last = hn::Add(first, hn::Sub(hn::ShiftLeft<kLogSide>(step), step));
+        const auto lowest = hn::ShiftRight<kPlaceBits>(hn::Min(first, last));
+        if constexpr (!kEnough) {
+            const auto highest = hn::ShiftRight<kPlaceBits>(hn::Max(first, last));
+            widest = hn::Max(widest, hn::Sub(highest, lowest));
+        }
+        hn::Store(first, d, firsts + r);
+        hn::Store(lowest, d, axis.window.data() + r);
+        hn::Store(hn::DemoteTo(d16, step), d16, axis.step.data() + r);
     }
+    axis.count = least_count;
+    if constexpr (!kEnough)
+        axis.count = std::max(least_count, hn::GetLane(hn::MaxOfLanes(d, widest)) + 2);
+    const auto last_window = hn::Set(d, samples - axis.count);
+    for (int r = 0; r < kSide; r += static_cast<int>(hn::Lanes(d))) {
+        const auto window = hn::Min(hn::Load(d, axis.window.data() + r), last_window);
+        const auto first = hn::Sub(hn::Load(d, firsts + r), hn::ShiftLeft<kPlaceBits>(window));
+        hn::Store(window, d, axis.window.data() + r);
+        hn::Store(hn::DemoteTo(du16, first), du16, axis.first.data() + r);
+    }
+}
+
+template <int kSide>
+HWY_INLINE void PlaceWindows(const Corners& x, const Corners& y, int cols, int rows,
+                             SampleWindows& windows) {
+    // Two rows would often do, but a branch that can be foreseen is worth one that counts nothing.
+    constexpr int kCommonRows = 3;
+    PlaceRows<kSide, true>(x, cols, 2 * kSide, windows.x);
+    PlaceRows<kSide, false>(y, rows, kCommonRows, windows.y);
 }
 
 /// 16 bytes from each of some places.
@@ -145,25 +169,25 @@ struct Samples {
 };
 
 /// One row's value to all of its lanes.
-HWY_INLINE VU16 Broadcast(const std::uint16_t* rows, V8 index) {
+template <typename T>
+HWY_INLINE VU16 Broadcast(const T* rows, V8 index) {
     const D8 d;
     const DU16 du;
-    return hn::BitCast(du, hn::TableLookupBytes(hn::BitCast(d, hn::LoadDup128(du, rows)), index));
+    const hn::Repartition<T, DU16> from;
+    const V8 all = hn::BitCast(d, hn::LoadDup128(from, rows));
+    return hn::BitCast(du, hn::TableLookupBytes(all, index));
 }
 
 /// What is read, 8.7 fixed point. Samples lie 1 << kLogStep bytes apart.
 template <int kSide, int kLogStep>
-HWY_NOINLINE void ReadPlane(const Samples& plane, const Corners& corners_x,
-                            const Corners& corners_y, std::uint16_t* samples) {
+HWY_NOINLINE void ReadPlane(const Samples& plane, const SampleWindows& windows,
+                            std::uint16_t* samples) {
     const D16 d;
     const DU16 du;
     const D8 d8;
     constexpr int kWindow = 2 * kSide;  // samples
     constexpr int kVectors = kWindow * (1 << kLogStep) / 16;
-    Axis x;
-    Axis y;
-    PlaceRows<kSide>(corners_x, plane.cols, kWindow, x);
-    PlaceRows<kSide>(corners_y, plane.rows, 1, y);
+    const auto& [x, y] = windows;
     const LaneTable<kSide>& lanes = kLaneTable<kSide>;
     const VU16 sample = hn::Load(du, lanes.sample);
     const VU16 byte = hn::Add(hn::Set(du, static_cast<std::uint16_t>(plane.first_byte)),
@@ -174,9 +198,10 @@ HWY_NOINLINE void ReadPlane(const Samples& plane, const Corners& corners_x,
     for (int r0 = 0; r0 < kSide; r0 += kVectorRows) {
         const V8 index =
             hn::Add(hn::Load(d8, lanes.broadcast), hn::Set(d8, static_cast<std::uint8_t>(2 * r0)));
-        const VU16 px =
-            hn::Add(Broadcast(x.first, index), hn::Mul(Broadcast(x.step, index), sample));
-        VU16 py = hn::Add(Broadcast(y.first, index), hn::Mul(Broadcast(y.step, index), sample));
+        const VU16 px = hn::Add(Broadcast(x.first.data(), index),
+                                hn::Mul(Broadcast(x.step.data(), index), sample));
+        VU16 py = hn::Add(Broadcast(y.first.data(), index),
+                          hn::Mul(Broadcast(y.step.data(), index), sample));
         const VU16 whole = hn::ShiftRight<kPlaceBits>(px);
         const VU16 beside = hn::Min(hn::Add(whole, one), last);
         const Window<kVectors> a(hn::Add(hn::ShiftLeft<kLogStep>(whole), byte));
@@ -186,15 +211,13 @@ HWY_NOINLINE void ReadPlane(const Samples& plane, const Corners& corners_x,
         const VU16 a_share = hn::Sub(hn::Set(du, std::uint16_t{256}), b_share);
 
         const std::uint8_t* from[4];
-        int deepest = 0;
         for (int g = 0; g < kVectorRows; ++g) {
-            const int r = r0 + g;
+            const auto r = static_cast<std::size_t>(r0 + g);
             from[g] = plane.begin + static_cast<std::ptrdiff_t>(y.window[r]) * plane.stride_bytes +
                       (x.window[r] << kLogStep);
-            deepest = std::max(deepest, y.count[r]);
         }
         VU16 sum = hn::Zero(du);
-        for (int k = 0; k < deepest; ++k) {
+        for (int k = 0; k < y.count; ++k) {
             const V8 low = LoadRows(from, 0);
             const V8 high = kVectors == 2 ? LoadRows(from, 16) : low;
             const VU16 along =
@@ -204,8 +227,7 @@ HWY_NOINLINE void ReadPlane(const Samples& plane, const Corners& corners_x,
                 hn::SaturatedSub(hn::Set(du, std::uint16_t{1 << kPlaceBits}), away));
             sum = hn::Add(sum, hn::MulHigh(along, share));
             py = hn::Sub(py, hn::Set(du, std::uint16_t{1 << kPlaceBits}));
-            for (int g = 0; g < kVectorRows; ++g)
-                from[g] += k + 1 < y.count[r0 + g] ? plane.stride_bytes : 0;
+            for (int g = 0; g < kVectorRows; ++g) from[g] += plane.stride_bytes;
         }
         hn::Store(sum, du, samples + r0 * kBlockLanes);
     }
@@ -234,9 +256,9 @@ HWY_INLINE Samples ChromaOf(const CameraFrame& frame) {
 HWY_INLINE void ReadLuma(const BlockSource& source, std::uint16_t* samples) {
     const CameraFrame& frame = source.camera->frame();
     if (frame.is_packed()) {
-        ReadPlane<8, 1>(LumaOf(frame), source.x, source.y, samples);
+        ReadPlane<8, 1>(LumaOf(frame), source.luma, samples);
     } else {
-        ReadPlane<8, 0>(LumaOf(frame), source.x, source.y, samples);
+        ReadPlane<8, 0>(LumaOf(frame), source.luma, samples);
     }
 }
 
@@ -247,16 +269,10 @@ HWY_INLINE void ReadChroma(const BlockSource& source, std::uint16_t* samples) {
         std::fill_n(samples, 4 * kBlockLanes, std::uint16_t{128 << kSampleBits});
         return;
     }
-    Corners x;
-    Corners y;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-        x[k] = CameraFrame::ChromaX(source.x[k]);
-        y[k] = frame.ChromaY(source.y[k]);
-    }
     if (frame.is_packed()) {
-        ReadPlane<4, 2>(ChromaOf(frame), x, y, samples);
+        ReadPlane<4, 2>(ChromaOf(frame), source.chroma, samples);
     } else {
-        ReadPlane<4, 1>(ChromaOf(frame), x, y, samples);
+        ReadPlane<4, 1>(ChromaOf(frame), source.chroma, samples);
     }
 }
 

@@ -16,9 +16,10 @@ namespace hitchview::algo::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 
-bool DrawBlockHere(const PanoramaBlock& /*block*/, const PanoramaPlanes& /*out*/) {
+bool PlaceSourceHere(BlockSource& /*source*/) {
     return false;
 }
+void DrawBlockHere(const PanoramaBlock& /*block*/, const PanoramaPlanes& /*out*/) {}
 
 #else
 
@@ -221,10 +222,24 @@ struct ChromaKind {
     }
 };
 
-bool DrawBlockHere(const PanoramaBlock& block, const PanoramaPlanes& out) {
+bool PlaceSourceHere(BlockSource& source) {
+    const CameraFrame& frame = source.camera->frame();
+    PlaceWindows<8>(source.x, source.y, frame.width_px, frame.height_px, source.luma);
+    if (!frame.has_chroma()) return true;
+    Corners x;
+    Corners y;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        x[k] = CameraFrame::ChromaX(source.x[k]);
+        y[k] = frame.ChromaY(source.y[k]);
+    }
+    const SamplePlane plane = frame.ChromaSamples(0);
+    PlaceWindows<4>(x, y, plane.cols, plane.rows, source.chroma);
+    return true;
+}
+
+void DrawBlockHere(const PanoramaBlock& block, const PanoramaPlanes& out) {
     Drawing<LumaKind>(block).Draw(out);
     Drawing<ChromaKind>(block).Draw(out);
-    return true;
 }
 
 #endif  // HWY_TARGET == HWY_SCALAR
@@ -235,11 +250,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace hitchview::algo {
 namespace {
+HWY_EXPORT(PlaceSourceHere);
 HWY_EXPORT(DrawBlockHere);
 }  // namespace
 
-bool DrawBlock(const PanoramaBlock& block, const PanoramaPlanes& out) {
-    return HWY_DYNAMIC_DISPATCH(DrawBlockHere)(block, out);
+bool PlaceSource(BlockSource& source) {
+    return HWY_DYNAMIC_DISPATCH(PlaceSourceHere)(source);
+}
+
+void DrawBlock(const PanoramaBlock& block, const PanoramaPlanes& out) {
+    HWY_DYNAMIC_DISPATCH(DrawBlockHere)(block, out);
 }
 
 }  // namespace hitchview::algo

@@ -4,10 +4,6 @@
 
 namespace hitchview::algo {
 
-/// Samples of a block's side, and their lanes in its rows: luma's, or colour's at half the size
-/// with u's before v's.
-inline constexpr int kBlockLanes = ComposedMap::kBlock;
-
 /// A camera moves by no more than this over a block, px: what it shows of a row fits into the
 /// kernel's window.
 inline constexpr float kKernelReach_px = 15;
@@ -15,10 +11,13 @@ inline constexpr float kKernelReach_px = 15;
 inline constexpr float kKernelMargin_px = 0.75F;
 inline constexpr int kKernelLeast_px = 32;
 
-/// Makes the pixels of a block that has sources, all of them within the limits above, with weights
-/// that add up to 1 at each corner if there are several. Fixed point: the same on every instruction
-/// set, and within one grey level of the exact bilinear value. False, and nothing done, where the
+/// Sets the windows of a source within the limits above. False, and nothing done, where the
 /// processor has no vector instructions.
-bool DrawBlock(const PanoramaBlock& block, const PanoramaPlanes& out);
+bool PlaceSource(BlockSource& source);
+
+/// Makes the pixels of a block that has sources, all of them placed, with weights that add up to 1
+/// at each corner if there are several. Fixed point: the same on every instruction set, and within
+/// one grey level of the exact bilinear value.
+void DrawBlock(const PanoramaBlock& block, const PanoramaPlanes& out);
 
 }  // namespace hitchview::algo

@@ -24,7 +24,12 @@ class CameraSampler {
     CameraSampler() = default;
     /// `gain`: (0.25, 4).
     CameraSampler(const CameraFrame& frame, float gain)
-        : frame_(frame), gain_(gain), tone_(ToneOf(frame.range, gain)) {}
+        : frame_(frame), gain_(gain), tone_(ToneOf(frame.range, gain)) {
+        planes_[0] = frame.LumaSamples();
+        if (!frame.has_chroma()) return;
+        planes_[1] = frame.ChromaSamples(0);
+        planes_[2] = frame.ChromaSamples(1);
+    }
 
     [[nodiscard]] const CameraFrame& frame() const { return frame_; }
     [[nodiscard]] const Tone& tone() const { return tone_; }
@@ -38,18 +43,18 @@ class CameraSampler {
     /// Read between the pixels, bilinear, by luma coordinates; outside the picture the nearest
     /// edge's. Grey levels.
     [[nodiscard]] std::array<float, 1> Luma(float x, float y) const {
-        return {Shown(gain_ * FullLuma(frame_.range, Read(frame_.LumaSamples(), x, y)))};
+        return {Shown(gain_ * FullLuma(frame_.range, Read(planes_[0], x, y)))};
     }
     /// u and v.
     [[nodiscard]] std::array<float, 2> Chroma(float x, float y) const {
         if (!frame_.has_chroma()) return {128, 128};
         const float cx = CameraFrame::ChromaX(x);
         const float cy = frame_.ChromaY(y);
-        const auto shown = [&](int channel) {
-            const float value = Read(frame_.ChromaSamples(channel), cx, cy) - 128;
+        const auto shown = [&](const SamplePlane& plane) {
+            const float value = Read(plane, cx, cy) - 128;
             return Shown(128 + gain_ * FullChroma(frame_.range, value));
         };
-        return {shown(0), shown(1)};
+        return {shown(planes_[1]), shown(planes_[2])};
     }
 
  private:
@@ -86,6 +91,7 @@ class CameraSampler {
     CameraFrame frame_;
     float gain_ = 1;
     Tone tone_{};
+    std::array<SamplePlane, 3> planes_;
 };
 
 }  // namespace hitchview::algo

@@ -24,12 +24,14 @@ struct Luma {
         return {out.y};
     }
     static int Stride_bytes(const PanoramaPlanes& out) { return out.y_stride_bytes; }
-    static std::uint8_t Hatched(int x, int y) {
+    static std::uint8_t Hatched(int diagonal) {
         constexpr std::uint8_t kDark = 40;
         constexpr std::uint8_t kLight = 72;
-        return (((x + y) >> 3) & 1) != 0 ? kLight : kDark;
+        return ((diagonal >> 3) & 1) != 0 ? kLight : kDark;
     }
-    static std::uint8_t Empty(bool hatched, int x, int y) { return hatched ? Hatched(x, y) : 0; }
+    static std::uint8_t Empty(bool hatched, int diagonal) {
+        return hatched ? Hatched(diagonal) : 0;
+    }
 };
 
 struct Chroma {
@@ -42,7 +44,7 @@ struct Chroma {
         return {out.u, out.v};
     }
     static int Stride_bytes(const PanoramaPlanes& out) { return out.chroma_stride_bytes; }
-    static std::uint8_t Empty(bool /*hatched*/, int /*x*/, int /*y*/) { return 128; }
+    static std::uint8_t Empty(bool /*hatched*/, int /*diagonal*/) { return 128; }
 };
 
 /// Makes one kind of samples of a block that the kernel cannot make, pixel by pixel: where a
@@ -57,6 +59,11 @@ class EdgeRows {
           stride_bytes_(Kind::Stride_bytes(out)),
           cols_(static_cast<std::size_t>(block.width / Kind::kScale)) {}
 
+    void Fill() const {
+        for (int row = 0; row < block_.height / Kind::kScale; ++row) {
+            for (std::uint8_t* to : RowOf(row)) std::memset(to, Kind::Empty(false, 0), cols_);
+        }
+    }
     void Blend() const {
         for (int row = 0; row < block_.height / Kind::kScale; ++row) BlendRow(row);
     }
@@ -119,7 +126,7 @@ class EdgeRows {
         return to;
     }
     [[nodiscard]] std::uint8_t Empty(int row, std::size_t col) const {
-        return Kind::Empty(hatched_, block_.x + static_cast<int>(col), block_.y + row);
+        return Kind::Empty(hatched_, block_.phase_px + static_cast<int>(col) + row);
     }
 
     const PanoramaBlock& block_;
@@ -142,7 +149,8 @@ bool BlockSource::SuitsKernel() const {
                std::abs(along[3] - along[2]) <= kKernelReach_px;
     };
     return SeesAll(kKernelMargin_px) && narrow(x) && narrow(y) &&
-           camera->frame().width_px >= kKernelLeast_px;
+           camera->frame().width_px >= kKernelLeast_px &&
+           camera->frame().height_px >= kKernelLeast_px;
 }
 
 bool PanoramaBlock::SuitsKernel() const {
@@ -163,12 +171,31 @@ bool PanoramaBlock::NormalizeWeights() {
     return true;
 }
 
-void PanoramaBlock::Render(NoData no_data, const PanoramaPlanes& out) {
+bool PanoramaBlock::PlaceSources() {
+    return std::all_of(sources.begin(), sources.end(),
+                       [](BlockSource& source) { return PlaceSource(source); });
+}
+
+void PanoramaBlock::Prepare() {
     const bool plain = sources.size() == 1 && !camera_missing;
-    if (SuitsKernel() && (plain || NormalizeWeights()) && DrawBlock(*this, out)) return;
+    for_kernel_ = SuitsKernel() && (plain || NormalizeWeights()) && PlaceSources();
+}
+
+void PanoramaBlock::Render(NoData no_data, const PanoramaPlanes& out) const {
+    if (for_kernel_) {
+        DrawBlock(*this, out);
+        return;
+    }
     const bool hatched = no_data == NoData::kPattern && camera_missing;
-    EdgeRows<Luma>(*this, hatched, out).Blend();
-    EdgeRows<Chroma>(*this, hatched, out).Blend();
+    const EdgeRows<Luma> luma(*this, hatched, out);
+    const EdgeRows<Chroma> chroma(*this, hatched, out);
+    if (sources.empty() && !hatched) {
+        luma.Fill();
+        chroma.Fill();
+    } else {
+        luma.Blend();
+        chroma.Blend();
+    }
 }
 
 }  // namespace hitchview::algo

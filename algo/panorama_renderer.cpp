@@ -2,29 +2,66 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 namespace hitchview::algo {
 namespace {
 
-/// Which sources of the map are seen in the blocks of a part of a block row; bit s is source s.
+constexpr int kBlock = ComposedMap::kBlock;
+constexpr int kStrip = 16;  // blocks
+
+/// Memory for the pixels of a strip of blocks.
+class StripPicture {
+ public:
+    [[nodiscard]] PanoramaPlanes planes() {
+        return {kWidth, kBlock, y_.data(), kWidth, u_.data(), v_.data(), kWidth / 2};
+    }
+    /// To the canvas with the strip's top left pixel at (x, y), as far as it lies on it.
+    void CopyTo(const PanoramaPlanes& out, int x, int y) const {
+        const int width = std::min(kWidth, out.width_px - x);
+        const int height = std::min(kBlock, out.height_px - y);
+        const auto chroma_at = static_cast<std::ptrdiff_t>(y / 2) * out.chroma_stride_bytes + x / 2;
+        CopyRows(y_.data(), kWidth, width, height,
+                 out.y + static_cast<std::ptrdiff_t>(y) * out.y_stride_bytes + x,
+                 out.y_stride_bytes);
+        CopyRows(u_.data(), kWidth / 2, width / 2, height / 2, out.u + chroma_at,
+                 out.chroma_stride_bytes);
+        CopyRows(v_.data(), kWidth / 2, width / 2, height / 2, out.v + chroma_at,
+                 out.chroma_stride_bytes);
+    }
+
+ private:
+    static constexpr int kWidth = kStrip * kBlock;
+
+    static void CopyRows(const std::uint8_t* from, int from_stride_bytes, int bytes, int rows,
+                         std::uint8_t* to, int stride_bytes) {
+        for (int r = 0; r < rows; ++r) {
+            std::memcpy(to + static_cast<std::ptrdiff_t>(r) * stride_bytes,
+                        from + static_cast<std::ptrdiff_t>(r) * from_stride_bytes,
+                        static_cast<std::size_t>(bytes));
+        }
+    }
+
+    alignas(64) std::array<std::uint8_t, kWidth * kBlock> y_;
+    alignas(64) std::array<std::uint8_t, kWidth * kBlock / 4> u_;
+    alignas(64) std::array<std::uint8_t, kWidth * kBlock / 4> v_;
+};
+
+/// Which sources of the map are seen in the blocks of a strip; bit s is source s.
 class BlockSources {
  public:
-    static constexpr int kCols = 64;
-
     BlockSources(const ComposedMap& map, int row, int first_col, int cols) {
         for (int s = 0; s < map.cameras(); ++s) {
             const ComposedMap::Corner* upper = &map.corner(s, row, first_col);
             const ComposedMap::Corner* lower = &map.corner(s, row + 1, first_col);
-            for (int i = 0; i <= cols; ++i) {
-                const auto at = static_cast<std::size_t>(i);
-                const bool used = upper[i].weight > 0 || lower[i].weight > 0;
-                used_[at] |= static_cast<unsigned>(used) << s;
-                seen_[at] |= static_cast<unsigned>(upper[i].sees && lower[i].sees) << s;
-            }
+            bool used = false;  // few sources are, and what is no branch is soon looked through
+            for (int i = 0; i <= cols; ++i)
+                used = used | (upper[i].weight > 0) | (lower[i].weight > 0);
+            if (used) Add(s, upper, lower, cols);
         }
     }
 
-    /// Of block `i` of the part: those with a share at one of its corners, and a place in the
+    /// Of block `i` of the strip: those with a share at one of its corners, and a place in the
     /// camera at all four.
     [[nodiscard]] unsigned of(int i) const {
         const auto at = static_cast<std::size_t>(i);
@@ -32,16 +69,42 @@ class BlockSources {
     }
 
  private:
-    std::array<unsigned, kCols + 1> used_{};
-    std::array<unsigned, kCols + 1> seen_{};
+    void Add(int s, const ComposedMap::Corner* upper, const ComposedMap::Corner* lower, int cols) {
+        for (int i = 0; i <= cols; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            const bool used = upper[i].weight > 0 || lower[i].weight > 0;
+            used_[at] |= static_cast<unsigned>(used) << s;
+            seen_[at] |= static_cast<unsigned>(upper[i].sees && lower[i].sees) << s;
+        }
+    }
+
+    std::array<unsigned, kStrip + 1> used_{};
+    std::array<unsigned, kStrip + 1> seen_{};
 };
 
-void PlaceSource(const ComposedMap& map, int s, int row, int col, BlockSource& source) {
+void ReadCorners(const ComposedMap& map, int s, int row, int col, BlockSource& source) {
     const ComposedMap::Corner* upper = &map.corner(s, row, col);
     const ComposedMap::Corner* lower = &map.corner(s, row + 1, col);
     source.x = {upper[0].x, upper[1].x, lower[0].x, lower[1].x};
     source.y = {upper[0].y, upper[1].y, lower[0].y, lower[1].y};
     source.weight = {upper[0].weight, upper[1].weight, lower[0].weight, lower[1].weight};
+}
+
+/// Blocks to a line of the cache, at two bytes to a camera pixel.
+constexpr int kLinePeriod = 4;
+
+/// Asks for the lines of memory that hold what a camera shows of a block.
+void Prefetch(const CameraFrame& frame, const BlockSource& block) {
+    const auto x = static_cast<int>(block.x[0]);
+    const auto [lowest, highest] = std::minmax_element(block.y.begin(), block.y.end());
+    const int first = std::max(static_cast<int>(*lowest), 0);
+    const int last = std::min(static_cast<int>(*highest) + 1, frame.height_px - 1);
+    if (x < 0 || x >= frame.width_px) return;
+    const SamplePlane luma = frame.LumaSamples();
+    for (int y = first; y <= last; ++y) __builtin_prefetch(luma.row(y) + x * luma.step_bytes);
+    if (frame.layout != PixelLayout::kNv12) return;
+    const SamplePlane chroma = frame.ChromaSamples(0);
+    for (int y = first / 2; y <= last / 2; ++y) __builtin_prefetch(chroma.row(y) + x / 2 * 2);
 }
 
 /// False, and nothing done, where the shift is too small to show.
@@ -59,6 +122,16 @@ bool ShiftSource(const MultibandBlend& bands, int s, int row, int col, BlockSour
 }
 
 }  // namespace
+
+/// Blocks are gathered some time before they are drawn: what they show is then in the cache, and
+/// the drawing of one need not wait for the gathering of the next. They are drawn to memory of
+/// their own: rows of a panorama often lie a power of two apart and displace each other from the
+/// cache unless they are written in one go.
+struct PanoramaRenderer::Strip {
+    int count = 0;
+    std::array<PanoramaBlock, kStrip> blocks;
+    StripPicture picture;
+};
 
 PanoramaRenderer::Samplers PanoramaRenderer::SamplersOf(const ComposedMap& map,
                                                         const RigFrames& frames) const {
@@ -88,20 +161,24 @@ void PanoramaRenderer::RenderBlended(const ComposedMap& map, const RigFrames& fr
 }
 
 void PanoramaRenderer::RenderBlockRow(const Scene& scene, const PanoramaPlanes& out, int row) {
-    constexpr int kBlock = ComposedMap::kBlock;
-    PanoramaBlock block;
-    block.y = row * kBlock;
-    block.height = std::min(kBlock, out.height_px - block.y);
-    const int cols = scene.map.block_cols();
-    for (int first = 0; first < cols; first += BlockSources::kCols) {
-        const int count = std::min(BlockSources::kCols, cols - first);
-        const BlockSources sources(scene.map, row, first, count);
-        for (int i = 0; i < count; ++i) {
-            block.x = (first + i) * kBlock;
-            block.width = std::min(kBlock, out.width_px - block.x);
-            Gather(scene, row, first + i, sources.of(i), block);
-            block.Render(scene.no_data, out);
-        }
+    Strip strip;
+    for (int first = 0; first < scene.map.block_cols(); first += kStrip) {
+        GatherStrip(scene, row, first, strip);
+        for (int i = 0; i < strip.count; ++i)
+            strip.blocks[static_cast<std::size_t>(i)].Render(scene.no_data, strip.picture.planes());
+        strip.picture.CopyTo(out, first * kBlock, row * kBlock);
+    }
+}
+
+void PanoramaRenderer::GatherStrip(const Scene& scene, int row, int first_col, Strip& strip) {
+    strip.count = std::min(kStrip, scene.map.block_cols() - first_col);
+    const BlockSources sources(scene.map, row, first_col, strip.count);
+    for (int i = 0; i < strip.count; ++i) {
+        PanoramaBlock& block = strip.blocks[static_cast<std::size_t>(i)];
+        block.x = i * kBlock;
+        block.phase_px = (first_col + i + row) * kBlock;
+        Gather(scene, row, first_col + i, sources.of(i), block);
+        block.Prepare();
     }
 }
 
@@ -120,7 +197,8 @@ void PanoramaRenderer::Gather(const Scene& scene, int row, int col, unsigned sou
         }
         BlockSource& source = block.sources.emplace_back();
         source.camera = &camera;
-        PlaceSource(scene.map, s, row, col, source);
+        ReadCorners(scene.map, s, row, col, source);
+        if (col % kLinePeriod == 0) Prefetch(camera.frame(), source);
         source.shifted = shifts && ShiftSource(*scene.bands, s, row, col, source);
     }
 }

@@ -35,10 +35,13 @@ class PanoramaRenderer {
         NoData no_data;
     };
 
+    struct Strip;
+
     [[nodiscard]] Samplers SamplersOf(const ComposedMap& map, const RigFrames& frames) const;
     static void Gather(const Scene& scene, int row, int col, unsigned sources,
                        PanoramaBlock& block);
     static void RenderBlockRow(const Scene& scene, const PanoramaPlanes& out, int row);
+    static void GatherStrip(const Scene& scene, int row, int first_col, Strip& strip);
 
     CameraGains gains_;
 };
