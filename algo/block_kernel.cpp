@@ -29,16 +29,17 @@ HWY_INLINE V16 LumaLevels(const CameraSampler::Tone& tone, VU16 samples) {
     const DU16 du;
     const VU16 bright = hn::SaturatedSub(samples, hn::Set(du, tone.luma_black));
     const VU16 shown = hn::MulHigh(hn::ShiftLeft<1>(bright), hn::Set(du, tone.luma_factor));
-    constexpr int kBits = 5;  // of 8 + 13 - 16
+    constexpr int kBits = kSampleBits + 1 + 13 - 16;
     const VU16 most = hn::Set(du, std::uint16_t{255 << kBits});
     return hn::BitCast(d, hn::ShiftLeft<kLevelBits - kBits>(hn::Min(shown, most)));
 }
 
 HWY_INLINE V16 ChromaLevels(const CameraSampler::Tone& tone, VU16 samples) {
     const D16 d;
-    const V16 from_grey = hn::Sub(hn::BitCast(d, samples), hn::Set(d, std::int16_t{128 << 7}));
+    const V16 from_grey =
+        hn::Sub(hn::BitCast(d, samples), hn::Set(d, std::int16_t{128 << kSampleBits}));
     const V16 shown = hn::MulHigh(hn::ShiftLeft<1>(from_grey), hn::Set(d, tone.chroma_factor));
-    constexpr int kBits = 4;  // of 8 + 12 - 16
+    constexpr int kBits = kSampleBits + 1 + 12 - 16;
     const V16 least = hn::Set(d, std::int16_t{-(128 << kBits)});
     const V16 most = hn::Set(d, std::int16_t{127 << kBits});
     const V16 clamped = hn::Min(hn::Max(shown, least), most);
@@ -75,12 +76,14 @@ class Drawing {
     explicit Drawing(const PanoramaBlock& block) : block_(block) {}
 
     void Draw(const PanoramaPlanes& out) {
-        if (block_.sources.size() == 1) {
+        if (block_.sources.size() > 1) {
+            BlendLevels();
+            Finish<kLevelBits - 1>(sum_);
+        } else if (block_.sources[0].shifted) {
             ReadLevels(block_.sources[0]);
             Finish<kLevelBits>(levels_);
         } else {
-            BlendLevels();
-            Finish<kLevelBits - 1>(sum_);
+            DrawPlain(block_.sources[0]);
         }
         Kind::Write(block_, bytes_, out);
     }
@@ -88,18 +91,27 @@ class Drawing {
  private:
     static constexpr std::size_t kLanes = Kind::kSide * kBlockLanes;
 
+    static V16 LevelsOf(const CameraSampler::Tone& tone, VU16 samples) {
+        const D16 d;
+        return tone.as_taken ? hn::BitCast(d, hn::ShiftRight<kSampleBits - kLevelBits>(samples))
+                             : Kind::Levels(tone, samples);
+    }
+
+    void DrawPlain(const BlockSource& source) {
+        const DU16 du;
+        Kind::Read(source, samples_);
+        for (std::size_t i = 0; i < kLanes; i += hn::Lanes(du)) {
+            const V16 levels = LevelsOf(source.camera->tone(), hn::Load(du, samples_ + i));
+            StoreRounded<kLevelBits>(levels, bytes_ + i);
+        }
+    }
+
     void ReadLevels(const BlockSource& source) {
         const D16 d;
         const DU16 du;
         Kind::Read(source, samples_);
-        const CameraSampler::Tone& tone = source.camera->tone();
-        for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
-            const VU16 samples = hn::Load(du, samples_ + i);
-            const V16 levels = tone.as_taken
-                                   ? hn::BitCast(d, hn::ShiftRight<7 - kLevelBits>(samples))
-                                   : Kind::Levels(tone, samples);
-            hn::Store(levels, d, levels_ + i);
-        }
+        for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
+            hn::Store(LevelsOf(source.camera->tone(), hn::Load(du, samples_ + i)), d, levels_ + i);
         if (source.shifted) AddShift(source);
     }
 
@@ -147,16 +159,21 @@ class Drawing {
         }
     }
 
+    /// `kBits` fractional bits.
     template <int kBits>
-    void Finish(const std::int16_t* levels) {
+    static void StoreRounded(V16 levels, std::uint8_t* to) {
         const D16 d;
         const hn::Rebind<std::uint8_t, D16> d8;
         const V16 half = hn::Set(d, std::int16_t{1 << (kBits - 1)});
-        for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d)) {
-            const V16 rounded =
-                hn::ShiftRight<kBits>(hn::SaturatedAdd(hn::Load(d, levels + i), half));
-            hn::Store(hn::DemoteTo(d8, rounded), d8, bytes_ + i);
-        }
+        const V16 rounded = hn::ShiftRight<kBits>(hn::SaturatedAdd(levels, half));
+        hn::Store(hn::DemoteTo(d8, rounded), d8, to);
+    }
+
+    template <int kBits>
+    void Finish(const std::int16_t* levels) {
+        const D16 d;
+        for (std::size_t i = 0; i < kLanes; i += hn::Lanes(d))
+            StoreRounded<kBits>(hn::Load(d, levels + i), bytes_ + i);
     }
 
     const PanoramaBlock& block_;

@@ -40,8 +40,8 @@ ComposedMap::ComposedMap(const Projection& canvas,
         covered_[unit].assign(corners, 0);
         if (!geometry[unit]) continue;
         for (int i = 0; i < geometry[unit]->cameras(); ++i) {
-            sources_.push_back(
-                {unit, i, std::vector<Corner>(corners), std::vector<float>(corners)});
+            sources_.push_back({unit, i, std::vector<Corner>(corners), std::vector<float>(corners),
+                                std::vector<Columns>(static_cast<std::size_t>(rows_))});
         }
     }
 }
@@ -194,6 +194,7 @@ float ComposedMap::BendAt(const Composition& composition, const Vector2d& pixel)
 
 void ComposedMap::WeightRow(int row) {
     const bool two = (*geometry_)[Unit::kTrailer].has_value();
+    for (Source& source : sources_) source.used[static_cast<std::size_t>(row)] = {cols_, -1};
     for (int col = 0; col < cols_; ++col) {
         const std::size_t at = At(row, col);
         const auto tractor =
@@ -207,8 +208,12 @@ void ComposedMap::WeightRow(int row) {
                 if (covered_[Other(unit)][at] == 0) share[unit] = std::max(share[unit], kFiller);
             }
         }
-        for (Source& source : sources_)
+        for (Source& source : sources_) {
             source.corners[at].weight = share[source.unit] * source.share[at];
+            if (source.corners[at].weight <= 0) continue;
+            Columns& used = source.used[static_cast<std::size_t>(row)];
+            used = {std::min(used.first, col), col};
+        }
     }
 }
 

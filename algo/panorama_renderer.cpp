@@ -54,10 +54,11 @@ class BlockSources {
         for (int s = 0; s < map.cameras(); ++s) {
             const ComposedMap::Corner* upper = &map.corner(s, row, first_col);
             const ComposedMap::Corner* lower = &map.corner(s, row + 1, first_col);
-            bool used = false;  // few sources are, and what is no branch is soon looked through
-            for (int i = 0; i <= cols; ++i)
-                used = used | (upper[i].weight > 0) | (lower[i].weight > 0);
-            if (used) Add(s, upper, lower, cols);
+            const auto reaches = [&](const ComposedMap::Columns& used) {
+                return used.first <= first_col + cols && used.last >= first_col;
+            };
+            if (reaches(map.used(s, row)) || reaches(map.used(s, row + 1)))
+                Add(s, upper, lower, cols);
         }
     }
 
@@ -90,23 +91,6 @@ void ReadCorners(const ComposedMap& map, int s, int row, int col, BlockSource& s
     source.weight = {upper[0].weight, upper[1].weight, lower[0].weight, lower[1].weight};
 }
 
-/// Blocks to a line of the cache, at two bytes to a camera pixel.
-constexpr int kLinePeriod = 4;
-
-/// Asks for the lines of memory that hold what a camera shows of a block.
-void Prefetch(const CameraFrame& frame, const BlockSource& block) {
-    const auto x = static_cast<int>(block.x[0]);
-    const auto [lowest, highest] = std::minmax_element(block.y.begin(), block.y.end());
-    const int first = std::max(static_cast<int>(*lowest), 0);
-    const int last = std::min(static_cast<int>(*highest) + 1, frame.height_px - 1);
-    if (x < 0 || x >= frame.width_px) return;
-    const SamplePlane luma = frame.LumaSamples();
-    for (int y = first; y <= last; ++y) __builtin_prefetch(luma.row(y) + x * luma.step_bytes);
-    if (frame.layout != PixelLayout::kNv12) return;
-    const SamplePlane chroma = frame.ChromaSamples(0);
-    for (int y = first / 2; y <= last / 2; ++y) __builtin_prefetch(chroma.row(y) + x / 2 * 2);
-}
-
 /// False, and nothing done, where the shift is too small to show.
 bool ShiftSource(const MultibandBlend& bands, int s, int row, int col, BlockSource& source) {
     constexpr float kLeast = 0.25F;
@@ -123,10 +107,10 @@ bool ShiftSource(const MultibandBlend& bands, int s, int row, int col, BlockSour
 
 }  // namespace
 
-/// Blocks are gathered some time before they are drawn: what they show is then in the cache, and
-/// the drawing of one need not wait for the gathering of the next. They are drawn to memory of
-/// their own: rows of a panorama often lie a power of two apart and displace each other from the
-/// cache unless they are written in one go.
+/// Blocks are gathered some time before they are drawn, so that the drawing of one need not wait
+/// for the gathering of the next. They are drawn to memory of their own: rows of a panorama often
+/// lie a power of two apart and displace each other from the cache unless they are written in one
+/// go.
 struct PanoramaRenderer::Strip {
     int count = 0;
     std::array<PanoramaBlock, kStrip> blocks;
@@ -198,7 +182,6 @@ void PanoramaRenderer::Gather(const Scene& scene, int row, int col, unsigned sou
         BlockSource& source = block.sources.emplace_back();
         source.camera = &camera;
         ReadCorners(scene.map, s, row, col, source);
-        if (col % kLinePeriod == 0) Prefetch(camera.frame(), source);
         source.shifted = shifts && ShiftSource(*scene.bands, s, row, col, source);
     }
 }
