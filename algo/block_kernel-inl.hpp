@@ -180,8 +180,8 @@ HWY_INLINE VU16 Broadcast(const T* rows, V8 index) {
 
 /// What is read, 8.7 fixed point. Samples lie 1 << kLogStep bytes apart.
 template <int kSide, int kLogStep>
-HWY_NOINLINE void ReadPlane(const Samples& plane, const SampleWindows& windows,
-                            std::uint16_t* samples) {
+HWY_INLINE void ReadPlane(const Samples& plane, const SampleWindows& windows,
+                          std::uint16_t* samples) {
     const D16 d;
     const DU16 du;
     const D8 d8;

@@ -19,7 +19,7 @@ namespace hitchview::algo::HWY_NAMESPACE {
 bool PlaceSourceHere(BlockSource& /*source*/) {
     return false;
 }
-void DrawBlockHere(const PanoramaBlock& /*block*/, const PanoramaPlanes& /*out*/) {}
+void DrawBlocksHere(std::span<const PanoramaBlock> /*blocks*/, const PanoramaPlanes& /*out*/) {}
 
 #else
 
@@ -106,7 +106,7 @@ class Drawing {
         }
     }
 
-    void ReadLevels(const BlockSource& source) {
+    HWY_NOINLINE void ReadLevels(const BlockSource& source) {
         const D16 d;
         const DU16 du;
         Kind::Read(source, samples_);
@@ -254,9 +254,16 @@ bool PlaceSourceHere(BlockSource& source) {
     return true;
 }
 
-void DrawBlockHere(const PanoramaBlock& block, const PanoramaPlanes& out) {
-    Drawing<LumaKind>(block).Draw(out);
-    Drawing<ChromaKind>(block).Draw(out);
+template <typename Kind>
+void DrawSamples(std::span<const PanoramaBlock> blocks, const PanoramaPlanes& out) {
+    for (const PanoramaBlock& block : blocks) {
+        if (block.suits_kernel()) Drawing<Kind>(block).Draw(out);
+    }
+}
+
+void DrawBlocksHere(std::span<const PanoramaBlock> blocks, const PanoramaPlanes& out) {
+    DrawSamples<LumaKind>(blocks, out);
+    DrawSamples<ChromaKind>(blocks, out);
 }
 
 #endif  // HWY_TARGET == HWY_SCALAR
@@ -268,15 +275,15 @@ HWY_AFTER_NAMESPACE();
 namespace hitchview::algo {
 namespace {
 HWY_EXPORT(PlaceSourceHere);
-HWY_EXPORT(DrawBlockHere);
+HWY_EXPORT(DrawBlocksHere);
 }  // namespace
 
 bool PlaceSource(BlockSource& source) {
     return HWY_DYNAMIC_DISPATCH(PlaceSourceHere)(source);
 }
 
-void DrawBlock(const PanoramaBlock& block, const PanoramaPlanes& out) {
-    HWY_DYNAMIC_DISPATCH(DrawBlockHere)(block, out);
+void DrawBlocks(std::span<const PanoramaBlock> blocks, const PanoramaPlanes& out) {
+    HWY_DYNAMIC_DISPATCH(DrawBlocksHere)(blocks, out);
 }
 
 }  // namespace hitchview::algo

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "algo/panorama_block.hpp"
 
 namespace hitchview::algo {
@@ -15,9 +17,8 @@ inline constexpr int kKernelLeast_px = 32;
 /// processor has no vector instructions.
 bool PlaceSource(BlockSource& source);
 
-/// Makes the pixels of a block that has sources, all of them placed, with weights that add up to 1
-/// at each corner if there are several. Fixed point: the same on every instruction set, and within
-/// one grey level of the exact bilinear value.
-void DrawBlock(const PanoramaBlock& block, const PanoramaPlanes& out);
+/// Makes the pixels of those blocks that suit the kernel: within one grey level of the exact
+/// bilinear value. Fixed point: the same on every instruction set.
+void DrawBlocks(std::span<const PanoramaBlock> blocks, const PanoramaPlanes& out);
 
 }  // namespace hitchview::algo

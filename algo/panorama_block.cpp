@@ -153,7 +153,7 @@ bool BlockSource::SuitsKernel() const {
            camera->frame().height_px >= kKernelLeast_px;
 }
 
-bool PanoramaBlock::SuitsKernel() const {
+bool PanoramaBlock::SourcesSuitKernel() const {
     return !sources.empty() && std::all_of(sources.begin(), sources.end(),
                                            [](const auto& source) { return source.SuitsKernel(); });
 }
@@ -178,14 +178,10 @@ bool PanoramaBlock::PlaceSources() {
 
 void PanoramaBlock::Prepare() {
     const bool plain = sources.size() == 1 && !camera_missing;
-    for_kernel_ = SuitsKernel() && (plain || NormalizeWeights()) && PlaceSources();
+    suits_kernel_ = SourcesSuitKernel() && (plain || NormalizeWeights()) && PlaceSources();
 }
 
-void PanoramaBlock::Render(NoData no_data, const PanoramaPlanes& out) const {
-    if (for_kernel_) {
-        DrawBlock(*this, out);
-        return;
-    }
+void PanoramaBlock::RenderPixels(NoData no_data, const PanoramaPlanes& out) const {
     const bool hatched = no_data == NoData::kPattern && camera_missing;
     const EdgeRows<Luma> luma(*this, hatched, out);
     const EdgeRows<Chroma> chroma(*this, hatched, out);

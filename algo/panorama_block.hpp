@@ -61,17 +61,20 @@ struct PanoramaBlock {
     [[nodiscard]] bool IsPlain() const {
         return sources.size() == 1 && !camera_missing && sources[0].SeesAll();
     }
-    /// After the sources have been set, some time before the block is rendered.
+    /// To be called when the sources have been set.
     void Prepare();
-    /// Makes the pixels of the block.
-    void Render(NoData no_data, const PanoramaPlanes& out) const;
+    /// Its pixels can be made by the vector kernel: it has sources, all of them placed, with
+    /// weights that add up to 1 at each corner if there are several.
+    [[nodiscard]] bool suits_kernel() const { return suits_kernel_; }
+    /// Makes the pixels of a block that does not suit the kernel, one by one.
+    void RenderPixels(NoData no_data, const PanoramaPlanes& out) const;
 
  private:
-    [[nodiscard]] bool SuitsKernel() const;
+    [[nodiscard]] bool SourcesSuitKernel() const;
     bool NormalizeWeights();
     bool PlaceSources();
 
-    bool for_kernel_ = false;
+    bool suits_kernel_ = false;
 };
 
 }  // namespace hitchview::algo

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <span>
+
+#include "algo/block_kernel.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -148,8 +151,11 @@ void PanoramaRenderer::RenderBlockRow(const Scene& scene, const PanoramaPlanes& 
     Strip strip;
     for (int first = 0; first < scene.map.block_cols(); first += kStrip) {
         GatherStrip(scene, row, first, strip);
-        for (int i = 0; i < strip.count; ++i)
-            strip.blocks[static_cast<std::size_t>(i)].Render(scene.no_data, strip.picture.planes());
+        const std::span blocks(strip.blocks.data(), static_cast<std::size_t>(strip.count));
+        DrawBlocks(blocks, strip.picture.planes());
+        for (const PanoramaBlock& block : blocks) {
+            if (!block.suits_kernel()) block.RenderPixels(scene.no_data, strip.picture.planes());
+        }
         strip.picture.CopyTo(out, first * kBlock, row * kBlock);
     }
 }
