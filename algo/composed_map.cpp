@@ -44,8 +44,8 @@ ComposedMap::ComposedMap(const Projection& canvas,
         if (!geometry[unit]) continue;
         units_[unit] = std::make_unique<UnitMap>(canvas, *geometry[unit]);
         for (int i = 0; i < geometry[unit]->cameras(); ++i) {
-            sources_.push_back(
-                {unit, i, std::vector<Corner>(corners), std::vector<float>(corners)});
+            sources_.push_back({unit, i, std::vector<Corner>(corners), std::vector<float>(corners),
+                                std::vector<Columns>(static_cast<std::size_t>(rows_))});
         }
     }
 }
@@ -213,6 +213,7 @@ float ComposedMap::BendAt(const Composition& composition, int row, int col) cons
 
 void ComposedMap::WeightRow(int row) {
     const bool two = units_[Unit::kTrailer] != nullptr;
+    for (Source& source : sources_) source.used[static_cast<std::size_t>(row)] = {cols_, -1};
     for (int col = 0; col < cols_; ++col) {
         const std::size_t at = At(row, col);
         const auto tractor =
@@ -226,8 +227,12 @@ void ComposedMap::WeightRow(int row) {
                 if (covered_[Other(unit)][at] == 0) share[unit] = std::max(share[unit], kFiller);
             }
         }
-        for (Source& source : sources_)
+        for (Source& source : sources_) {
             source.corners[at].weight = share[source.unit] * source.share[at];
+            if (source.corners[at].weight <= 0) continue;
+            Columns& used = source.used[static_cast<std::size_t>(row)];
+            used = {std::min(used.first, col), col};
+        }
     }
 }
 

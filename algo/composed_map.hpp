@@ -57,6 +57,14 @@ class ComposedMap {
         return sources_[static_cast<std::size_t>(source)]
             .corners[static_cast<std::size_t>(row * cols_ + col)];
     }
+    /// Columns of a row of corners outside which a source has no weight; none if last < first.
+    struct Columns {
+        int first = 0;
+        int last = -1;
+    };
+    [[nodiscard]] const Columns& used(int source, int row) const {
+        return sources_[static_cast<std::size_t>(source)].used[static_cast<std::size_t>(row)];
+    }
     /// The part of the composition's detail that was used: all of it at the seams, none far away.
     /// Without corners if the composition has none.
     [[nodiscard]] const CornerField& shown_detail() const { return shown_detail_; }
@@ -74,7 +82,8 @@ class ComposedMap {
         Unit unit;
         int camera;  ///< of the unit
         std::vector<Corner> corners;
-        std::vector<float> share;  ///< in the unit's view
+        std::vector<float> share;   ///< in the unit's view
+        std::vector<Columns> used;  ///< of each row
     };
 
     /// All that concerns one unit: where the canvas lies on its view, and its cameras there.
