@@ -123,7 +123,7 @@ class Bench {
 
     BenchFrames Frames(int cameras) {
         WorkerPool workers(options_.workers);
-        return {rig_, cameras, hal::PixelFormat::kNv12, cache_, workers};
+        return {rig_, cameras, options_.format, cache_, workers};
     }
     RigGeometry Geometry(int canvas_width_px, int cameras) const {
         auto geometry = GeometryOf(rig_, canvas_width_px, cameras);

@@ -3,14 +3,17 @@
 #include <atomic>
 #include <filesystem>
 
+#include "hal/frame.hpp"
+
 namespace hitchview::app {
 
 struct BenchOptions {
     int workers = 2;  ///< [1, kMaxWorkers]
     int canvas_width_px = 4096;
     int camera_width_px = 1280;
-    int frames = 120;             ///< of each run
-    int rounds = 3;               ///< whole runs; the median counts
+    hal::PixelFormat format = hal::PixelFormat::kUyvy;  ///< of the cameras: also kNv12, kYuyv
+    int frames = 120;                                   ///< of each run
+    int rounds = 3;                                     ///< whole runs; the median counts
     bool quick = false;           ///< one round, and no scaling over cameras, widths and workers
     std::filesystem::path cache;  ///< folder for rendered frames; empty: none
     std::filesystem::path json;   ///< file for all figures; empty: none

@@ -1,6 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "app/bench_verb.hpp"
 #include "app/demo_verb.hpp"
@@ -141,6 +144,14 @@ CLI::App& AddBench(CLI::App& app, BenchOptions& options) {
     verb.add_option("--frames", options.frames, "frame sets of each run")
         ->check(CLI::Range(10, 100000))
         ->capture_default_str();
+    verb.add_option("--format", options.format, "how the cameras deliver their pixels")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, hitchview::hal::PixelFormat>{
+                {"nv12", hitchview::hal::PixelFormat::kNv12},
+                {"uyvy", hitchview::hal::PixelFormat::kUyvy},
+                {"yuyv", hitchview::hal::PixelFormat::kYuyv}},
+            CLI::ignore_case))
+        ->option_text("nv12, uyvy (default) or yuyv");
     verb.add_option("--rounds", options.rounds, "runs of which the median counts")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
