@@ -35,6 +35,35 @@ int ReductionFor(const UnitGeometry& geometry, double scale) {
     return reduction;
 }
 
+/// Means of kSide x kSide samples, kStep bytes apart. Constants, so that the compiler makes vector
+/// code of it.
+template <int kSide, int kStep>
+void ReduceRows(const SamplePlane& plane, cv::Mat1b& reduced) {
+    constexpr int kArea = kSide * kSide;
+    for (int y = 0; y < reduced.rows; ++y) {
+        const std::uint8_t* in = plane.row(y * kSide);
+        std::uint8_t* out = reduced[y];
+        for (int x = 0; x < reduced.cols; ++x) {
+            unsigned sum = kArea / 2;
+            for (int v = 0; v < kSide; ++v) {
+                const std::uint8_t* row =
+                    in + static_cast<std::ptrdiff_t>(v) * plane.stride_bytes + x * kSide * kStep;
+                for (int u = 0; u < kSide; ++u) sum += row[u * kStep];
+            }
+            out[x] = static_cast<std::uint8_t>(sum / kArea);
+        }
+    }
+}
+
+template <int kSide>
+void ReduceBy(const SamplePlane& plane, cv::Mat1b& reduced) {
+    if (plane.step_bytes == 1) {
+        ReduceRows<kSide, 1>(plane, reduced);
+    } else {
+        ReduceRows<kSide, 2>(plane, reduced);
+    }
+}
+
 }  // namespace
 
 SemiSurroundView::SemiSurroundView(const UnitGeometry& geometry, double scale)
@@ -124,19 +153,19 @@ void SemiSurroundView::Compose(const UnitFrames& frames, cv::Mat1b& view) {
     UpdateMask(frames);
 }
 
+/// A limited range is left as it is: what is tracked and matched are differences, and these come
+/// out one seventh smaller.
 void SemiSurroundView::Reduce(const CameraFrame& frame, cv::Mat1b& reduced) const {
-    const int r = reduction_;
     const SamplePlane luma = frame.LumaSamples();
-    for (int y = 0; y < reduced.rows; ++y) {
-        std::uint8_t* out = reduced[y];
-        for (int x = 0; x < reduced.cols; ++x) {
-            int sum = r * r / 2;
-            for (int v = 0; v < r; ++v) {
-                const std::uint8_t* row = luma.row(y * r + v) + x * r * luma.step_bytes;
-                for (int u = 0; u < r; ++u) sum += row[u * luma.step_bytes];
-            }
-            out[x] = static_cast<std::uint8_t>(sum / (r * r));
-        }
+    switch (reduction_) {
+        case 1:
+            return ReduceBy<1>(luma, reduced);
+        case 2:
+            return ReduceBy<2>(luma, reduced);
+        case 4:
+            return ReduceBy<4>(luma, reduced);
+        default:
+            return ReduceBy<8>(luma, reduced);
     }
 }
 

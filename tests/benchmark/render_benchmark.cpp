@@ -6,9 +6,10 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "algo/exposure_gains.hpp"
+#include "algo/grey_pyramid.hpp"
 #include "algo/multiband_blend.hpp"
 #include "algo/panorama_renderer.hpp"
+#include "algo/semi_surround_view.hpp"
 #include "drivers/simulated_rig.hpp"
 #include "tests/support/camera_picture.hpp"
 #include "tests/support/nv12_picture.hpp"
@@ -24,6 +25,7 @@ using tests::CameraPicture;
 
 const cv::Size kCamera(1280, 720);
 const cv::Size kPanorama(4096, 720);
+constexpr double kAnalysisScale = 0.25;
 
 /// Eight cameras round a tractor-trailer with the mounts of the simulated one, a composition as
 /// while driving, and pictures of one format.
@@ -46,6 +48,10 @@ class Ring {
                 gains_[unit][i] = 0.94F + 0.03F * static_cast<float>(i);
             }
         }
+        for (const Unit unit : algo::kUnits) {
+            views_[unit].emplace(*geometry_[unit], kAnalysisScale);
+            pyramids_[unit].emplace(views_[unit]->width_px(), views_[unit]->height_px());
+        }
         composition_.M_canvas_view[Unit::kTrailer] = algo::ToPose(canvas_, {{131, 0.02, -0.01}});
         composition_.discrepancy.setConstant(1.7F);
         map_.emplace(canvas_, geometry_, algo::SeamOptions{});
@@ -58,6 +64,13 @@ class Ring {
 
     void Render(tests::PanoramaPicture& panorama) {
         renderer_.RenderBlended(*map_, frames_, *bands_, panorama.planes(), runner_);
+    }
+    /// Both units' views, as the estimation wants them.
+    void ComposeGrey() {
+        for (const Unit unit : algo::kUnits) {
+            views_[unit]->Compose(frames_[unit], pyramids_[unit]->base());
+            pyramids_[unit]->Build();
+        }
     }
     /// Of all cameras and the panorama.
     [[nodiscard]] std::size_t bytes() const {
@@ -76,6 +89,8 @@ class Ring {
     std::optional<algo::ComposedMap> map_;
     std::optional<algo::MultibandBlend> bands_;
     algo::PanoramaRenderer renderer_;
+    algo::PerUnit<std::optional<algo::SemiSurroundView>> views_;
+    algo::PerUnit<std::optional<algo::GreyPyramid>> pyramids_;
     algo::SerialRunner runner_;
 };
 
@@ -154,6 +169,14 @@ BENCHMARK_CAPTURE(RenderPanorama, yuyv_limited, PixelLayout::kYuyv, SampleRange:
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(RenderPanorama, grey, PixelLayout::kGrey, SampleRange::kFull)
     ->Unit(benchmark::kMillisecond);
+
+void ComposeGreyViews(benchmark::State& state, PixelLayout layout) {
+    Ring ring(layout, SampleRange::kFull);
+    for (auto _ : state) ring.ComposeGrey();
+    state.counters["best_ms"] = 1e3 * Fastest_s([&] { ring.ComposeGrey(); });
+}
+BENCHMARK_CAPTURE(ComposeGreyViews, nv12, PixelLayout::kNv12)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ComposeGreyViews, uyvy, PixelLayout::kUyvy)->Unit(benchmark::kMillisecond);
 
 void RemapColour(benchmark::State& state) {
     Remap remap;
