@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+
+namespace hitchview::algo {
+
+/// Square patches of a grey picture in 16-bit integers, and the sums over them that alignment
+/// needs. No rounding depends on the processor. Rows are kStride long, a whole number of vectors;
+/// what lies beyond kSide is 0.
+struct IntegerPatch {
+    static constexpr int kSide = 15;  ///< px, odd
+    static constexpr int kHalf = kSide / 2;
+    static constexpr int kArea = kSide * kSide;
+    static constexpr int kStride = 16;
+    static constexpr int kUnit = 32;      ///< sampled positions are multiples of 1 / kUnit px
+    static constexpr int kGreyUnit = 16;  ///< sampled grey levels are multiples of 1 / kGreyUnit
+
+    using Values = std::array<std::int16_t, kSide * kStride>;
+    alignas(32) Values value;
+};
+
+/// A patch around a pixel, as it is: grey level - 128, and twice its slopes by central differences.
+struct TemplatePatch {
+    IntegerPatch grey;
+    IntegerPatch slope_x;
+    IntegerPatch slope_y;
+};
+
+/// Sums over a template alone. Each is below 2^31.
+struct TemplateSums {
+    std::int32_t g, x, y;  ///< grey, slopes
+    std::int32_t gg, xx, xy, yy, gx, gy;
+};
+
+/// Sums over a sampled patch p and its products with a template. Each is below 2^31.
+struct SampleSums {
+    std::int32_t p, pp, xp, yp;
+};
+
+/// Rows of `image` must be followed by kStride - kSide readable bytes (those of a GreyPyramid
+/// are). The patch, and for a template one pixel more on each side, must lie inside.
+void CutTemplate(const cv::Mat1b& image, int centre_x, int centre_y, TemplatePatch& t);
+TemplateSums SumTemplate(const TemplatePatch& t);
+
+/// Bilinear samples around (centre_x, centre_y) / kUnit px, kGreyUnit (grey level - 128). The
+/// patch, and one pixel more to the right and below, must lie inside.
+void SamplePatch(const cv::Mat1b& image, int centre_x, int centre_y, IntegerPatch& p);
+SampleSums SumSample(const TemplatePatch& t, const IntegerPatch& p);
+/// Sum of the products of a template's grey levels and a sampled patch.
+std::int32_t SumProducts(const IntegerPatch& template_grey, const IntegerPatch& p);
+
+}  // namespace hitchview::algo
