@@ -42,22 +42,17 @@ void Halve(const cv::Mat1b& fine, cv::Mat1b& coarse, std::uint16_t* sums) {
     }
 }
 
-cv::Mat1b PaddedPicture(int width_px, int height_px) {
-    const cv::Mat1b padded(height_px, width_px + GreyPyramid::kRowPadding, std::uint8_t{0});
-    return padded.colRange(0, width_px);
-}
-
 }  // namespace
 
 GreyPyramid::GreyPyramid(int width_px, int height_px)
     : column_sums_(1, width_px + 2 * kMargin, std::uint16_t{0}) {
     constexpr int kShortestSide = 24;
-    levels_[0] = PaddedPicture(width_px, height_px);
+    levels_[0] = cv::Mat1b(height_px, width_px, std::uint8_t{0});
     while (count_ < kMaxLevels) {
         const cv::Mat1b& fine = levels_[static_cast<std::size_t>(count_ - 1)];
         if ((std::min(fine.cols, fine.rows) + 1) / 2 < kShortestSide) break;
         levels_[static_cast<std::size_t>(count_++)] =
-            PaddedPicture((fine.cols + 1) / 2, (fine.rows + 1) / 2);
+            cv::Mat1b((fine.rows + 1) / 2, (fine.cols + 1) / 2, std::uint8_t{0});
     }
 }
 

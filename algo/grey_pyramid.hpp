@@ -11,8 +11,6 @@ namespace hitchview::algo {
 class GreyPyramid {
  public:
     static constexpr int kMaxLevels = 5;
-    /// Pixels after each row of a level that may be read, for whole vectors.
-    static constexpr int kRowPadding = 16;
 
     /// As many levels, at most kMaxLevels, as keep the shorter side at 24 px or more.
     GreyPyramid(int width_px, int height_px);

@@ -7,23 +7,16 @@
 namespace hitchview::algo {
 namespace {
 
-constexpr int kSide = IntegerPatch::kSide;
-constexpr int kHalf = IntegerPatch::kHalf;
-constexpr int kStride = IntegerPatch::kStride;
+constexpr int kWidth = IntegerPatch::kWidth;
+constexpr int kHeight = IntegerPatch::kHeight;
+constexpr int kArea = IntegerPatch::kArea;
+constexpr int kLeft = IntegerPatch::kLeft;
 constexpr int kUnit = IntegerPatch::kUnit;
 constexpr int kGreyUnit = IntegerPatch::kGreyUnit;
 /// Of samples blended along a row: whatever two of them blend to fits into 16 bits.
 constexpr int kRowGreyUnit = 8;
 static_assert(255 * kRowGreyUnit * kUnit + kUnit < 1 << 16);
 constexpr int kMiddleGrey = 128;
-constexpr int kValues = kSide * kStride;
-
-/// All bits of the columns of a patch, none of those beyond.
-constexpr IntegerPatch::Values kInside = [] {
-    IntegerPatch::Values inside{};
-    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = i % kStride < kSide ? -1 : 0;
-    return inside;
-}();
 
 struct Fraction {
     std::uint16_t x;
@@ -33,11 +26,11 @@ struct Fraction {
 /// Pixels of `rows` rows of a patch, one after the other: loops over them need no end of a row.
 template <int kRows>
 struct Pixels {
-    alignas(32) std::array<std::uint8_t, kRows * kStride> grey;
+    alignas(32) std::array<std::uint8_t, kRows * kWidth> grey;
 
     Pixels(const std::uint8_t* top_left, std::ptrdiff_t step) {
         for (int y = 0; y < kRows; ++y) {
-            std::memcpy(grey.data() + y * kStride, top_left + y * step, kStride);
+            std::memcpy(grey.data() + y * kWidth, top_left + y * step, kWidth);
         }
     }
 };
@@ -50,12 +43,12 @@ void CutRows(const std::uint8_t* __restrict pixels, const std::uint8_t* __restri
     std::int16_t* __restrict slope_x = t.slope_x.value.data();
     std::int16_t* __restrict slope_y = t.slope_y.value.data();
     const std::uint8_t* __restrict above = pixels;
-    const std::uint8_t* __restrict here = pixels + kStride;
-    const std::uint8_t* __restrict below = pixels + 2 * kStride;
-    for (int i = 0; i < kValues; ++i) {
-        grey[i] = static_cast<std::int16_t>((here[i] - kMiddleGrey) & kInside[i]);
-        slope_x[i] = static_cast<std::int16_t>((right[i] - left[i]) & kInside[i]);
-        slope_y[i] = static_cast<std::int16_t>((below[i] - above[i]) & kInside[i]);
+    const std::uint8_t* __restrict here = pixels + kWidth;
+    const std::uint8_t* __restrict below = pixels + 2 * kWidth;
+    for (int i = 0; i < kArea; ++i) {
+        grey[i] = static_cast<std::int16_t>(here[i] - kMiddleGrey);
+        slope_x[i] = static_cast<std::int16_t>(right[i] - left[i]);
+        slope_y[i] = static_cast<std::int16_t>(below[i] - above[i]);
     }
 }
 
@@ -67,18 +60,18 @@ void SampleRows(const std::uint8_t* __restrict pixels, const std::uint8_t* __res
     constexpr int kRowHalf = kRowScale / 2;
     constexpr int kScale = kUnit * kRowGreyUnit / kGreyUnit;
     constexpr int kHalfScale = kScale / 2;
-    alignas(32) std::uint16_t blended[kValues + kStride];
+    alignas(32) std::uint16_t blended[kArea + kWidth];
     const auto gx = static_cast<std::uint16_t>(kUnit - f.x);
     const auto gy = static_cast<std::uint16_t>(kUnit - f.y);
-    for (int i = 0; i < kValues + kStride; ++i) {
+    for (int i = 0; i < kArea + kWidth; ++i) {
         const auto sum = static_cast<std::uint16_t>(pixels[i] * gx + right[i] * f.x + kRowHalf);
         blended[i] = static_cast<std::uint16_t>(sum / kRowScale);
     }
-    for (int i = 0; i < kValues; ++i) {
+    for (int i = 0; i < kArea; ++i) {
         const auto sum =
-            static_cast<std::uint16_t>(blended[i] * gy + blended[i + kStride] * f.y + kHalfScale);
+            static_cast<std::uint16_t>(blended[i] * gy + blended[i + kWidth] * f.y + kHalfScale);
         const auto grey = static_cast<std::int16_t>(sum / kScale);
-        out[i] = static_cast<std::int16_t>((grey - kGreyUnit * kMiddleGrey) & kInside[i]);
+        out[i] = static_cast<std::int16_t>(grey - kGreyUnit * kMiddleGrey);
     }
 }
 
@@ -86,7 +79,7 @@ HV_MULTIVERSION
 SampleSums SumRows(const std::int16_t* __restrict slope_x, const std::int16_t* __restrict slope_y,
                    const std::int16_t* __restrict p) {
     SampleSums s{};
-    for (int i = 0; i < kValues; ++i) {
+    for (int i = 0; i < kArea; ++i) {
         s.p += p[i];
         s.pp += p[i] * p[i];
         s.xp += slope_x[i] * p[i];
@@ -99,7 +92,7 @@ HV_MULTIVERSION
 TemplateSums SumTemplateRows(const std::int16_t* __restrict g, const std::int16_t* __restrict x,
                              const std::int16_t* __restrict y) {
     TemplateSums s{};
-    for (int i = 0; i < kValues; ++i) {
+    for (int i = 0; i < kArea; ++i) {
         s.g += g[i];
         s.x += x[i];
         s.y += y[i];
@@ -116,7 +109,7 @@ TemplateSums SumTemplateRows(const std::int16_t* __restrict g, const std::int16_
 HV_MULTIVERSION
 std::int32_t SumProductRows(const std::int16_t* __restrict a, const std::int16_t* __restrict b) {
     std::int32_t sum = 0;
-    for (int i = 0; i < kValues; ++i) sum += a[i] * b[i];
+    for (int i = 0; i < kArea; ++i) sum += a[i] * b[i];
     return sum;
 }
 
@@ -124,10 +117,10 @@ std::int32_t SumProductRows(const std::int16_t* __restrict a, const std::int16_t
 
 void CutTemplate(const cv::Mat1b& image, int centre_x, int centre_y, TemplatePatch& t) {
     const auto step = static_cast<std::ptrdiff_t>(image.step1());
-    const std::uint8_t* top_left = image[centre_y - kHalf] + centre_x - kHalf;
-    const Pixels<kSide + 2> pixels(top_left - step, step);
-    const Pixels<kSide> left(top_left - 1, step);
-    const Pixels<kSide> right(top_left + 1, step);
+    const std::uint8_t* top_left = image[centre_y - kLeft] + centre_x - kLeft;
+    const Pixels<kHeight + 2> pixels(top_left - step, step);
+    const Pixels<kHeight> left(top_left - 1, step);
+    const Pixels<kHeight> right(top_left + 1, step);
     CutRows(pixels.grey.data(), left.grey.data(), right.grey.data(), t);
 }
 
@@ -136,12 +129,12 @@ TemplateSums SumTemplate(const TemplatePatch& t) {
 }
 
 void SamplePatch(const cv::Mat1b& image, int centre_x, int centre_y, IntegerPatch& p) {
-    const int left = centre_x - kHalf * kUnit;
-    const int top = centre_y - kHalf * kUnit;
+    const int left = centre_x - kLeft * kUnit;
+    const int top = centre_y - kLeft * kUnit;
     const auto step = static_cast<std::ptrdiff_t>(image.step1());
     const std::uint8_t* top_left = image[top / kUnit] + left / kUnit;
-    const Pixels<kSide + 1> pixels(top_left, step);
-    const Pixels<kSide + 1> right(top_left + 1, step);
+    const Pixels<kHeight + 1> pixels(top_left, step);
+    const Pixels<kHeight + 1> right(top_left + 1, step);
     const Fraction fraction{static_cast<std::uint16_t>(left % kUnit),
                             static_cast<std::uint16_t>(top % kUnit)};
     SampleRows(pixels.grey.data(), right.grey.data(), fraction, p.value.data());

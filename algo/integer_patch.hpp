@@ -6,18 +6,19 @@
 
 namespace hitchview::algo {
 
-/// Square patches of a grey picture in 16-bit integers, and the sums over them that alignment
-/// needs. No rounding depends on the processor. Rows are kStride long, a whole number of vectors;
-/// what lies beyond kSide is 0.
+/// Patches of a grey picture in 16-bit integers, and the sums over them that alignment needs. No
+/// rounding depends on the processor. A row is a whole vector: it reaches one pixel farther to the
+/// right of the centre than to the left.
 struct IntegerPatch {
-    static constexpr int kSide = 15;  ///< px, odd
-    static constexpr int kHalf = kSide / 2;
-    static constexpr int kArea = kSide * kSide;
-    static constexpr int kStride = 16;
+    static constexpr int kWidth = 16;   ///< px
+    static constexpr int kHeight = 15;  ///< px
+    static constexpr int kLeft = 7;     ///< px left of the centre, and above and below it
+    static constexpr int kRight = 8;    ///< px right of the centre
+    static constexpr int kArea = kWidth * kHeight;
     static constexpr int kUnit = 32;      ///< sampled positions are multiples of 1 / kUnit px
     static constexpr int kGreyUnit = 16;  ///< sampled grey levels are multiples of 1 / kGreyUnit
 
-    using Values = std::array<std::int16_t, kSide * kStride>;
+    using Values = std::array<std::int16_t, kArea>;
     alignas(32) Values value;
 };
 
@@ -39,8 +40,7 @@ struct SampleSums {
     std::int32_t p, pp, xp, yp;
 };
 
-/// Rows of `image` must be followed by kStride - kSide readable bytes (those of a GreyPyramid
-/// are). The patch, and for a template one pixel more on each side, must lie inside.
+/// The patch around the centre, and one pixel more on each side, must lie inside.
 void CutTemplate(const cv::Mat1b& image, int centre_x, int centre_y, TemplatePatch& t);
 TemplateSums SumTemplate(const TemplatePatch& t);
 

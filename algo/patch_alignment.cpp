@@ -15,20 +15,20 @@ using Eigen::Vector2f;
 using Eigen::Vector2i;
 
 constexpr int kUnit = IntegerPatch::kUnit;
-constexpr int kHalf = IntegerPatch::kHalf;
-static_assert(GreyPyramid::kRowPadding >= IntegerPatch::kStride - IntegerPatch::kSide);
 
 /// kArea^2 times the covariance of two values over a patch, from their sums.
 double Covariance(std::int32_t product, std::int32_t a, std::int32_t b) {
     return static_cast<double>(std::int64_t{IntegerPatch::kArea} * product - std::int64_t{a} * b);
 }
 
-/// True if `reach` px around `centre`, and one pixel more for interpolation, lie inside.
-bool Fits(const cv::Mat1b& image, const Vector2f& centre, int reach) {
-    const auto r = static_cast<float>(reach);
-    return centre.x() >= r && centre.y() >= r &&
-           centre.x() < static_cast<float>(image.cols - 1) - r &&
-           centre.y() < static_cast<float>(image.rows - 1) - r;
+/// True if the patch around `centre`, `spare` px more on each side, and one more to the right and
+/// below for interpolation, lie inside.
+bool Fits(const cv::Mat1b& image, const Vector2f& centre, int spare) {
+    const auto left = static_cast<float>(IntegerPatch::kLeft + spare);
+    const auto right = static_cast<float>(IntegerPatch::kRight + spare);
+    return centre.x() >= left && centre.y() >= left &&
+           centre.x() < static_cast<float>(image.cols - 1) - right &&
+           centre.y() < static_cast<float>(image.rows - 1) - left;
 }
 
 Vector2i Round(const Vector2f& v) {
@@ -88,13 +88,13 @@ bool Descend(const Template& t, const cv::Mat1b& image, const PatchAlignmentOpti
     for (int i = 0; i < options.max_steps; ++i) {
         const Vector2i sampled = Round(at * kUnit);
         const Vector2f here = sampled.cast<float>() / kUnit;
-        if (!Fits(image, here, kHalf)) return false;
+        if (!Fits(image, here, 0)) return false;
         SamplePatch(image, sampled.x(), sampled.y(), patch);
         const Vector2f step = Step(t, patch);
         at = here + step;
         if (step.squaredNorm() < options.enough_px * options.enough_px) break;
     }
-    return Fits(image, at, kHalf) && (at - start).norm() <= options.max_travel_px;
+    return Fits(image, at, 0) && (at - start).norm() <= options.max_travel_px;
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ std::optional<PatchMatch> AlignPatch(const GreyPyramid& from, const GreyPyramid&
         const Vector2i centre = Round(exact);
         const Vector2f beside = centre.cast<float>() - exact;
         Vector2f moved = at * scale + beside;
-        const bool textured = Fits(from.level(l), exact, kHalf + 1) &&
+        const bool textured = Fits(from.level(l), exact, 1) &&
                               MakeTemplate(from.level(l), centre, options.min_strength, t);
         if (textured && Descend(t, to.level(l), options, moved, patch)) {
             at = (moved - beside) / scale;

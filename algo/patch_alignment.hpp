@@ -21,12 +21,12 @@ struct PatchMatch {
     float correlation;  ///< of the two patches at the finest level, -1..1
 };
 
-/// Where the patch around `from_px` of `from` lies in `to`, starting at `guess_px`, from pyramid
-/// level `coarsest` down to `finest_level` (inverse compositional Lucas-Kanade; Baker and Matthews,
-/// IJCV 2004). Brightness and contrast of the two pictures may differ: both patches are brought to
-/// zero mean and equal deviation in every step. Empty when the patch has no texture, leaves the
-/// picture or runs away. Levels where the patch does not fit into the picture are skipped.
-/// Thread-safe.
+/// Where the patch (16 x 15 px) around `from_px` of `from` lies in `to`, starting at `guess_px`,
+/// from pyramid level `coarsest` down to `finest_level` (inverse compositional Lucas-Kanade; Baker
+/// and Matthews, IJCV 2004). Brightness and contrast of the two pictures may differ: both patches
+/// are brought to zero mean and equal deviation in every step. Empty when the patch has no texture,
+/// leaves the picture or runs away. Levels where the patch does not fit into the picture are
+/// skipped. Thread-safe.
 std::optional<PatchMatch> AlignPatch(const GreyPyramid& from, const GreyPyramid& to,
                                      const Eigen::Vector2f& from_px,
                                      const Eigen::Vector2f& guess_px, int coarsest,
