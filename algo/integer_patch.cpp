@@ -1,5 +1,6 @@
 #include "algo/integer_patch.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "algo/multiversion.hpp"
@@ -18,6 +19,9 @@ constexpr int kRowGreyUnit = 8;
 static_assert(255 * kRowGreyUnit * kUnit + kUnit < 1 << 16);
 constexpr int kMiddleGrey = 128;
 
+/// Rows that a template is sampled from: one more above, one below, one more to blend with.
+constexpr int kMaxRows = kHeight + 3;
+
 struct Fraction {
     std::uint16_t x;
     std::uint16_t y;
@@ -35,43 +39,38 @@ struct Pixels {
     }
 };
 
-/// `pixels`: from one row above the patch to one below.
-HV_MULTIVERSION
-void CutRows(const std::uint8_t* __restrict pixels, const std::uint8_t* __restrict left,
-             const std::uint8_t* __restrict right, TemplatePatch& t) {
-    std::int16_t* __restrict grey = t.grey.value.data();
-    std::int16_t* __restrict slope_x = t.slope_x.value.data();
-    std::int16_t* __restrict slope_y = t.slope_y.value.data();
-    const std::uint8_t* __restrict above = pixels;
-    const std::uint8_t* __restrict here = pixels + kWidth;
-    const std::uint8_t* __restrict below = pixels + 2 * kWidth;
-    for (int i = 0; i < kArea; ++i) {
-        grey[i] = static_cast<std::int16_t>(here[i] - kMiddleGrey);
-        slope_x[i] = static_cast<std::int16_t>(right[i] - left[i]);
-        slope_y[i] = static_cast<std::int16_t>(below[i] - above[i]);
-    }
-}
-
-/// Blends along rows, `right` being one pixel beside `pixels`, then along columns.
+/// Blends `rows` rows along themselves, `right` being one pixel beside `pixels`, then with the row
+/// below.
 HV_MULTIVERSION
 void SampleRows(const std::uint8_t* __restrict pixels, const std::uint8_t* __restrict right,
-                Fraction f, std::int16_t* __restrict out) {
+                Fraction f, int rows, std::int16_t* __restrict out) {
     constexpr int kRowScale = kUnit / kRowGreyUnit;
     constexpr int kRowHalf = kRowScale / 2;
     constexpr int kScale = kUnit * kRowGreyUnit / kGreyUnit;
     constexpr int kHalfScale = kScale / 2;
-    alignas(32) std::uint16_t blended[kArea + kWidth];
+    alignas(32) std::uint16_t blended[kMaxRows * kWidth];
     const auto gx = static_cast<std::uint16_t>(kUnit - f.x);
     const auto gy = static_cast<std::uint16_t>(kUnit - f.y);
-    for (int i = 0; i < kArea + kWidth; ++i) {
+    for (int i = 0; i < (rows + 1) * kWidth; ++i) {
         const auto sum = static_cast<std::uint16_t>(pixels[i] * gx + right[i] * f.x + kRowHalf);
         blended[i] = static_cast<std::uint16_t>(sum / kRowScale);
     }
-    for (int i = 0; i < kArea; ++i) {
+    for (int i = 0; i < rows * kWidth; ++i) {
         const auto sum =
             static_cast<std::uint16_t>(blended[i] * gy + blended[i + kWidth] * f.y + kHalfScale);
         const auto grey = static_cast<std::int16_t>(sum / kScale);
         out[i] = static_cast<std::int16_t>(grey - kGreyUnit * kMiddleGrey);
+    }
+}
+
+/// Of twice a slope in grey units; rounded down, which the mean that is subtracted later undoes.
+HV_MULTIVERSION
+void DifferRows(const std::int16_t* __restrict less, const std::int16_t* __restrict more,
+                std::int16_t* __restrict slope) {
+    constexpr int kShift = 2;
+    static_assert(2 * kGreyUnit >> kShift == TemplatePatch::kSlopeUnit);
+    for (int i = 0; i < kArea; ++i) {
+        slope[i] = static_cast<std::int16_t>((more[i] - less[i]) >> kShift);
     }
 }
 
@@ -113,31 +112,50 @@ std::int32_t SumProductRows(const std::int16_t* __restrict a, const std::int16_t
     return sum;
 }
 
+/// Where the samples round a centre, in units of 1 / kUnit px, are taken from.
+struct Place {
+    std::ptrdiff_t step;
+    const std::uint8_t* top_left;
+    Fraction fraction;
+
+    Place(const cv::Mat1b& image, int centre_x, int centre_y)
+        : step(static_cast<std::ptrdiff_t>(image.step1())),
+          top_left(image[centre_y / kUnit - kLeft] + centre_x / kUnit - kLeft),
+          fraction{static_cast<std::uint16_t>(centre_x % kUnit),
+                   static_cast<std::uint16_t>(centre_y % kUnit)} {}
+};
+
 }  // namespace
 
-void CutTemplate(const cv::Mat1b& image, int centre_x, int centre_y, TemplatePatch& t) {
-    const auto step = static_cast<std::ptrdiff_t>(image.step1());
-    const std::uint8_t* top_left = image[centre_y - kLeft] + centre_x - kLeft;
-    const Pixels<kHeight + 2> pixels(top_left - step, step);
-    const Pixels<kHeight> left(top_left - 1, step);
-    const Pixels<kHeight> right(top_left + 1, step);
-    CutRows(pixels.grey.data(), left.grey.data(), right.grey.data(), t);
+void SamplePatch(const cv::Mat1b& image, int centre_x, int centre_y, IntegerPatch& p) {
+    const Place place(image, centre_x, centre_y);
+    SampleRows(Pixels<kHeight + 1>(place.top_left, place.step).grey.data(),
+               Pixels<kHeight + 1>(place.top_left + 1, place.step).grey.data(), place.fraction,
+               kHeight, p.value.data());
+}
+
+void SampleTemplate(const cv::Mat1b& image, int centre_x, int centre_y, TemplatePatch& t) {
+    const Place place(image, centre_x, centre_y);
+    const std::uint8_t* above = place.top_left - place.step;
+    const Pixels<kMaxRows> left(above - 1, place.step);
+    const Pixels<kMaxRows> here(above, place.step);
+    const Pixels<kMaxRows> right(above + 1, place.step);
+    const Pixels<kMaxRows> beyond(above + 2, place.step);
+    constexpr int kRows = kMaxRows - 1;
+    alignas(32) std::array<std::int16_t, kRows * kWidth> less;
+    alignas(32) std::array<std::int16_t, kRows * kWidth> more;
+    SampleRows(left.grey.data() + kWidth, here.grey.data() + kWidth, place.fraction, kHeight,
+               less.data());
+    SampleRows(right.grey.data() + kWidth, beyond.grey.data() + kWidth, place.fraction, kHeight,
+               more.data());
+    DifferRows(less.data(), more.data(), t.slope_x.value.data());
+    SampleRows(here.grey.data(), right.grey.data(), place.fraction, kRows, more.data());
+    DifferRows(more.data(), more.data() + 2 * kWidth, t.slope_y.value.data());
+    std::copy_n(more.begin() + kWidth, kArea, t.grey.value.begin());
 }
 
 TemplateSums SumTemplate(const TemplatePatch& t) {
     return SumTemplateRows(t.grey.value.data(), t.slope_x.value.data(), t.slope_y.value.data());
-}
-
-void SamplePatch(const cv::Mat1b& image, int centre_x, int centre_y, IntegerPatch& p) {
-    const int left = centre_x - kLeft * kUnit;
-    const int top = centre_y - kLeft * kUnit;
-    const auto step = static_cast<std::ptrdiff_t>(image.step1());
-    const std::uint8_t* top_left = image[top / kUnit] + left / kUnit;
-    const Pixels<kHeight + 1> pixels(top_left, step);
-    const Pixels<kHeight + 1> right(top_left + 1, step);
-    const Fraction fraction{static_cast<std::uint16_t>(left % kUnit),
-                            static_cast<std::uint16_t>(top % kUnit)};
-    SampleRows(pixels.grey.data(), right.grey.data(), fraction, p.value.data());
 }
 
 SampleSums SumSample(const TemplatePatch& t, const IntegerPatch& p) {

@@ -22,8 +22,10 @@ struct IntegerPatch {
     alignas(32) Values value;
 };
 
-/// A patch around a pixel, as it is: grey level - 128, and twice its slopes by central differences.
+/// A patch that is looked for: grey as sampled, and kSlopeUnit times its slopes, from central
+/// differences.
 struct TemplatePatch {
+    static constexpr int kSlopeUnit = 8;
     IntegerPatch grey;
     IntegerPatch slope_x;
     IntegerPatch slope_y;
@@ -40,13 +42,12 @@ struct SampleSums {
     std::int32_t p, pp, xp, yp;
 };
 
-/// The patch around the centre, and one pixel more on each side, must lie inside.
-void CutTemplate(const cv::Mat1b& image, int centre_x, int centre_y, TemplatePatch& t);
-TemplateSums SumTemplate(const TemplatePatch& t);
-
 /// Bilinear samples around (centre_x, centre_y) / kUnit px, kGreyUnit (grey level - 128). The
 /// patch, and one pixel more to the right and below, must lie inside.
 void SamplePatch(const cv::Mat1b& image, int centre_x, int centre_y, IntegerPatch& p);
+/// The same with its slopes; one pixel more is needed on each side.
+void SampleTemplate(const cv::Mat1b& image, int centre_x, int centre_y, TemplatePatch& t);
+TemplateSums SumTemplate(const TemplatePatch& t);
 SampleSums SumSample(const TemplatePatch& t, const IntegerPatch& p);
 /// Sum of the products of a template's grey levels and a sampled patch.
 std::int32_t SumProducts(const IntegerPatch& template_grey, const IntegerPatch& p);

@@ -16,6 +16,10 @@ using Eigen::Vector2i;
 
 constexpr int kUnit = IntegerPatch::kUnit;
 
+constexpr double Square(double x) {
+    return x * x;
+}
+
 /// kArea^2 times the covariance of two values over a patch, from their sums.
 double Covariance(std::int32_t product, std::int32_t a, std::int32_t b) {
     return static_cast<double>(std::int64_t{IntegerPatch::kArea} * product - std::int64_t{a} * b);
@@ -35,8 +39,8 @@ Vector2i Round(const Vector2f& v) {
     return {static_cast<int>(std::lround(v.x())), static_cast<int>(std::lround(v.y()))};
 }
 
-/// The patch that is looked for. Sums of products are covariances, times kArea^2; slopes count
-/// twice.
+/// The patch that is looked for. Sums of products are covariances, times kArea^2, in the
+/// units of TemplatePatch.
 struct Template {
     TemplatePatch patch;
     TemplateSums sums;
@@ -47,15 +51,15 @@ struct Template {
 
 /// False if there is too little texture.
 bool MakeTemplate(const cv::Mat1b& image, const Vector2i& centre, float min_strength, Template& t) {
-    CutTemplate(image, centre.x(), centre.y(), t.patch);
+    SampleTemplate(image, centre.x(), centre.y(), t.patch);
     t.sums = SumTemplate(t.patch);
     const TemplateSums& s = t.sums;
     const double a = Covariance(s.xx, s.x, s.x);
     const double b = Covariance(s.xy, s.x, s.y);
     const double c = Covariance(s.yy, s.y, s.y);
-    constexpr double kScale = 4.0 * IntegerPatch::kArea * IntegerPatch::kArea;
+    constexpr double kSquaredUnit = Square(TemplatePatch::kSlopeUnit * IntegerPatch::kArea);
     const double smaller = 0.5 * (a + c - std::sqrt((a - c) * (a - c) + 4 * b * b));
-    if (smaller < double{min_strength} * kScale) return false;
+    if (smaller < double{min_strength} * kSquaredUnit) return false;
     Matrix2d hessian;
     hessian << a, b, b, c;
     t.inverse_hessian = hessian.inverse();
@@ -76,7 +80,8 @@ Vector2f Step(const Template& t, const IntegerPatch& patch) {
     const SampleSums s = SumSample(t.patch, patch);
     const double gain = std::sqrt(t.variance / std::max(1.0, Covariance(s.pp, s.p, s.p)));
     const Vector2d slope_patch{Covariance(s.xp, t.sums.x, s.p), Covariance(s.yp, t.sums.y, s.p)};
-    const Vector2d step = -2 * (t.inverse_hessian * (gain * slope_patch - t.slope_grey));
+    constexpr double kUnits = double{TemplatePatch::kSlopeUnit} / IntegerPatch::kGreyUnit;
+    const Vector2d step = -kUnits * (t.inverse_hessian * (gain * slope_patch - t.slope_grey));
     return step.cast<float>();
 }
 
@@ -108,11 +113,12 @@ std::optional<PatchMatch> AlignPatch(const GreyPyramid& from, const GreyPyramid&
     for (int l = std::min(coarsest, from.levels() - 1); l >= options.finest_level; --l) {
         const float scale = 1.0F / static_cast<float>(1 << l);
         const Vector2f exact = from_px * scale;
-        // The nearest pixel is followed: its patch needs no interpolation.
-        const Vector2i centre = Round(exact);
-        const Vector2f beside = centre.cast<float>() - exact;
+        // What is followed lies on the grid of samples, beside the feature.
+        const Vector2i centre = Round(exact * kUnit);
+        const Vector2f followed = centre.cast<float>() / kUnit;
+        const Vector2f beside = followed - exact;
         Vector2f moved = at * scale + beside;
-        const bool textured = Fits(from.level(l), exact, 1) &&
+        const bool textured = Fits(from.level(l), followed, 1) &&
                               MakeTemplate(from.level(l), centre, options.min_strength, t);
         if (textured && Descend(t, to.level(l), options, moved, patch)) {
             at = (moved - beside) / scale;
