@@ -2,12 +2,103 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+
+#include "algo/multiversion.hpp"
 
 namespace hitchview::algo {
 namespace {
 
 /// Sobel derivatives are 8 times the slope.
 constexpr float kSlopeScale = 1.0F / 64.0F;
+
+/// Three neighbouring rows of a picture.
+template <typename T>
+struct Rows {
+    const T* above;
+    const T* here;
+    const T* below;
+};
+
+template <typename T>
+Rows<T> Around(const cv::Mat_<T>& picture, int y) {
+    return {picture[y - 1], picture[y], picture[y + 1]};
+}
+
+/// Sobel derivatives of the inner pixels of a row.
+HV_MULTIVERSION
+void DeriveRow(const Rows<std::uint8_t>& rows, int width, std::int16_t* __restrict gx,
+               std::int16_t* __restrict gy) {
+    const std::uint8_t* __restrict a = rows.above;
+    const std::uint8_t* __restrict h = rows.here;
+    const std::uint8_t* __restrict b = rows.below;
+    for (int x = 1; x < width - 1; ++x) {
+        gx[x] = static_cast<std::int16_t>(a[x + 1] - a[x - 1] + 2 * (h[x + 1] - h[x - 1]) +
+                                          b[x + 1] - b[x - 1]);
+        gy[x] = static_cast<std::int16_t>(b[x - 1] - a[x - 1] + 2 * (b[x] - a[x]) + b[x + 1] -
+                                          a[x + 1]);
+    }
+}
+
+/// Replaces the products of an earlier row by g1 g2, and the column sums accordingly.
+HV_MULTIVERSION
+void ExchangeProducts(const std::int16_t* __restrict g1, const std::int16_t* __restrict g2,
+                      int width, int* __restrict products, int* __restrict column_sums) {
+    for (int x = 0; x < width; ++x) {
+        const int product = g1[x] * g2[x];
+        column_sums[x] += product - products[x];
+        products[x] = product;
+    }
+}
+
+/// Smaller eigenvalue of [a b; b c].
+HV_MULTIVERSION
+void SmallerEigenvalues(const float* __restrict a, const float* __restrict b,
+                        const float* __restrict c, int count, float* __restrict smaller) {
+    for (int x = 0; x < count; ++x) {
+        const float difference = a[x] - c[x];
+        smaller[x] = 0.5F * (a[x] + c[x] - std::sqrt(difference * difference + 4 * b[x] * b[x]));
+    }
+}
+
+HV_MULTIVERSION
+void BoxMeans(const int* __restrict sums, int count, float scale, float* __restrict means) {
+    for (int x = 0; x < count; ++x) {
+        const int sum = sums[x - 2] + sums[x - 1] + sums[x] + sums[x + 1] + sums[x + 2];
+        means[x] = scale * static_cast<float>(sum);
+    }
+}
+
+/// 1 where a pixel is at least `least` and the largest of 3 x 3; of equal ones the last counts.
+HV_MULTIVERSION
+void MarkPeaks(const Rows<float>& rows, int count, float least, std::uint8_t* __restrict peak) {
+    const float* __restrict a = rows.above;
+    const float* __restrict h = rows.here;
+    const float* __restrict b = rows.below;
+    for (int x = 0; x < count; ++x) {
+        const float s = h[x];
+        peak[x] = static_cast<std::uint8_t>(
+            static_cast<int>(s >= least) & static_cast<int>(s >= h[x - 1]) &
+            static_cast<int>(s > h[x + 1]) & static_cast<int>(s >= a[x - 1]) &
+            static_cast<int>(s >= a[x]) & static_cast<int>(s >= a[x + 1]) &
+            static_cast<int>(s > b[x - 1]) & static_cast<int>(s > b[x]) &
+            static_cast<int>(s > b[x + 1]));
+    }
+}
+
+/// Calls `found` with each place that is marked.
+template <typename Found>
+void ForEachMark(const std::uint8_t* marks, int count, Found&& found) {
+    constexpr int kAtOnce = 8;
+    for (int x = 0; x < count; x += kAtOnce) {
+        const int here = std::min(kAtOnce, count - x);
+        std::uint64_t any = 0;
+        std::memcpy(&any, marks + x, static_cast<std::size_t>(here));
+        for (int i = 0; any != 0 && i < here; ++i) {
+            if (marks[x + i] != 0) found(x + i);
+        }
+    }
+}
 
 }  // namespace
 
@@ -16,6 +107,9 @@ CornerDetector::CornerDetector(int width_px, int height_px, const CornerDetector
       strength_(height_px, width_px, 0.0F),
       products_(3 * kBox, width_px, 0),
       column_sums_(3, width_px, 0),
+      slopes_(2, width_px, std::int16_t{0}),
+      means_(3, width_px, 0.0F),
+      marks_(1, width_px, std::uint8_t{0}),
       blocked_(height_px, width_px, std::uint8_t{0}) {}
 
 void CornerDetector::Detect(const cv::Mat1b& image, const cv::Mat1b& mask,
@@ -39,41 +133,21 @@ void CornerDetector::MeasureStrength(const cv::Mat1b& image) {
 }
 
 void CornerDetector::AddRow(const cv::Mat1b& image, int y) {
-    const std::uint8_t* above = image[y - 1];
-    const std::uint8_t* here = image[y];
-    const std::uint8_t* below = image[y + 1];
+    std::int16_t* gx = slopes_[0];
+    std::int16_t* gy = slopes_[1];
+    DeriveRow(Around(image, y), image.cols, gx, gy);
     const int slot = 3 * (y % kBox);
-    std::array<int*, 3> product{products_[slot], products_[slot + 1], products_[slot + 2]};
-    std::array<int*, 3> sum{column_sums_[0], column_sums_[1], column_sums_[2]};
-    for (int x = 1; x + 1 < image.cols; ++x) {
-        const int gx = above[x + 1] - above[x - 1] + 2 * (here[x + 1] - here[x - 1]) +
-                       below[x + 1] - below[x - 1];
-        const int gy =
-            below[x - 1] - above[x - 1] + 2 * (below[x] - above[x]) + below[x + 1] - above[x + 1];
-        const std::array<int, 3> now{gx * gx, gx * gy, gy * gy};
-        for (std::size_t k = 0; k < 3; ++k) {
-            sum[k][x] += now[k] - product[k][x];
-            product[k][x] = now[k];
-        }
-    }
+    ExchangeProducts(gx, gx, image.cols, products_[slot], column_sums_[0]);
+    ExchangeProducts(gx, gy, image.cols, products_[slot + 1], column_sums_[1]);
+    ExchangeProducts(gy, gy, image.cols, products_[slot + 2], column_sums_[2]);
 }
 
 void CornerDetector::WriteStrengthRow(int y) {
-    constexpr int kHalf = kBox / 2;
+    constexpr int kFirst = kBox / 2 + 1;
     constexpr float kMean = kSlopeScale / (kBox * kBox);
-    const auto box = [](const int* s, int x) {
-        return kMean * static_cast<float>(s[x - 2] + s[x - 1] + s[x] + s[x + 1] + s[x + 2]);
-    };
-    const int* xx = column_sums_[0];
-    const int* xy = column_sums_[1];
-    const int* yy = column_sums_[2];
-    float* out = strength_[y];
-    for (int x = kHalf + 1; x < strength_.cols - kHalf - 1; ++x) {
-        const float a = box(xx, x);
-        const float b = box(xy, x);
-        const float c = box(yy, x);
-        out[x] = 0.5F * (a + c - std::sqrt((a - c) * (a - c) + 4 * b * b));
-    }
+    const int count = strength_.cols - 2 * kFirst;
+    for (int k = 0; k < 3; ++k) BoxMeans(column_sums_[k] + kFirst, count, kMean, means_[k]);
+    SmallerEigenvalues(means_[0], means_[1], means_[2], count, strength_[y] + kFirst);
 }
 
 float CornerDetector::CollectPeaks(const cv::Mat1b& mask) {
@@ -83,21 +157,17 @@ float CornerDetector::CollectPeaks(const cv::Mat1b& mask) {
     }
     float best = 0;
     const int border = std::max(options_.border_px, kBox / 2 + 2);
+    const int count = strength_.cols - 2 * border;
     for (int y = border; y < strength_.rows - border; ++y) {
-        const float* above = strength_[y - 1];
-        const float* here = strength_[y];
-        const float* below = strength_[y + 1];
-        for (int x = border; x < strength_.cols - border; ++x) {
-            const float s = here[x];
-            if (s < options_.min_strength || s < here[x - 1] || s <= here[x + 1] || s < above[x] ||
-                s <= below[x] || s < above[x - 1] || s < above[x + 1] || s <= below[x - 1] ||
-                s <= below[x + 1]) {
-                continue;
-            }
-            if (!mask.empty() && mask(y, x) == 0) continue;
-            best = std::max(best, s);
+        const Rows<float> rows = Around(strength_, y);
+        MarkPeaks({rows.above + border, rows.here + border, rows.below + border}, count,
+                  options_.min_strength, marks_[0]);
+        ForEachMark(marks_[0], count, [&](int i) {
+            const int x = border + i;
+            if (!mask.empty() && mask(y, x) == 0) return;
+            best = std::max(best, strength_(y, x));
             KeepPeak(x, y);
-        }
+        });
     }
     return best;
 }

@@ -57,8 +57,11 @@ class CornerDetector {
 
     CornerDetectorOptions options_;
     cv::Mat1f strength_;
-    cv::Mat1i products_;     // gx gx, gx gy, gy gy of the last kBox rows
-    cv::Mat1i column_sums_;  // of those rows
+    cv::Mat1i products_;             // gx gx, gx gy, gy gy of the last kBox rows
+    cv::Mat1i column_sums_;          // of those rows
+    cv::Mat_<std::int16_t> slopes_;  // gx, gy of a row; 0 at its ends
+    cv::Mat1f means_;                // of gx gx, gx gy, gy gy round the pixels of a row
+    cv::Mat1b marks_;                // peaks of a row
     cv::Mat1b blocked_;
     std::array<Bucket, kBucketCols * kBucketRows> buckets_;
 };

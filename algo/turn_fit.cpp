@@ -43,8 +43,13 @@ struct TurnFit::Normal {
     int inliers = 0;
 
     void Add(double weight, double error, const Vector6d& slope) {
-        matrix += weight * slope * slope.transpose();
+        matrix += (weight * slope) * slope.transpose();
         right -= weight * error * slope;
+    }
+    /// Of an error that does not depend on the translation.
+    void AddOfTurn(double weight, double error, const Vector3d& slope) {
+        matrix.topLeftCorner<3, 3>() += (weight * slope) * slope.transpose();
+        right.head<3>() -= weight * error * slope;
     }
 };
 
@@ -63,7 +68,8 @@ std::optional<Turn> TurnFit::Fit(std::span<const SightMotion> sights, const Matr
     Normal normal;
     for (int step = 0; step < options_.steps; ++step) {
         normal = Normal{};
-        for (const SightMotion& sight : sights) Add(sight, Spread(step), normal);
+        const double spread_px = Spread(step);
+        for (const SightMotion& sight : sights) Add(sight, spread_px, normal);
         AddUsualTranslation(normal);
         Step(normal);
     }
@@ -110,8 +116,8 @@ void TurnFit::Add(const SightMotion& sight, double spread_px, Normal& normal) co
                  options_.px_per_rad * e->seen.cross(e->across),
         swing_px_per_m * e->across;
     normal.Add(trust / across, e->across_px, slope);
-    slope << -options_.px_per_rad * e->seen.cross(e->along), Vector3d::Zero();
-    normal.Add(trust * Weight(e->along_px, along) / along, e->along_px, slope);
+    normal.AddOfTurn(trust * Weight(e->along_px, along) / along, e->along_px,
+                     -options_.px_per_rad * e->seen.cross(e->along));
     constexpr double kInlier = 0.25;  // weight of an error as large as the deviation
     normal.inliers += trust > kInlier ? 1 : 0;
 }

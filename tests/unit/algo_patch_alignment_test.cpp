@@ -175,10 +175,10 @@ TEST(PatchAlignmentTest, ATemplateMustFitIntoThePictureWithOnePixelToSpare) {
         return AlignPatch(pyramid, pyramid, at, at, 3, {}).has_value();
     };
     EXPECT_TRUE(found(8, 8));
-    EXPECT_TRUE(found(kSize.width - 9.01, kSize.height - 9.01));
+    EXPECT_TRUE(found(kSize.width - 10.05, kSize.height - 9.05));
     EXPECT_FALSE(found(7.9, 100));
     EXPECT_FALSE(found(100, 7.9));
-    EXPECT_FALSE(found(kSize.width - 9.0, 100));
+    EXPECT_FALSE(found(kSize.width - 10.0, 100));
     EXPECT_FALSE(found(100, kSize.height - 9.0));
     EXPECT_FALSE(found(-100, 1e6));
 }
