@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "algo/seam_detail.hpp"
+#include "algo/unified_options.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -36,7 +37,7 @@ ComposedMap::ComposedMap(const Projection& canvas,
       rows_(whole_.rows()),
       cols_(whole_.cols()),
       seams_(canvas, rows_, cols_, whole_.spacing_px(), seam),
-      seam_cost_(rows_ * cols_, {}) {
+      seam_cost_(rows_ * cols_, SeamCostOptionsOf(canvas)) {
     const auto corners = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_);
     for (const Unit unit : kUnits) {
         first_source_[unit] = static_cast<int>(sources_.size());
@@ -98,7 +99,7 @@ void ComposedMap::FadeDetail(const Composition& composition, TaskRunner& runner)
     shown_detail_ = composition.detail;
     if (shown_detail_.empty() || !units_[Unit::kTrailer]) return;
     FadeFromSeams(canvas_mesh_, composition.discrepancy, composition.detail, seams_,
-                  {.kappa = composition.kappa}, runner, shown_detail_);
+                  ShownDetailOptions(canvas_, composition.kappa), runner, shown_detail_);
     runner.Run(rows_, [&](int row) { LocateFadedRow(composition, row); });
 }
 

@@ -15,12 +15,10 @@
 namespace hitchview::algo {
 
 /// From canvas pixels straight to camera pixels: calibration, placement, stabilisation, stitching
-/// and seam in one map, known at the corners of blocks of kBlock x kBlock canvas pixels, to be
-/// interpolated in between. So every output pixel is resampled once.
+/// and seam in one map, known at the corners of blocks of block_px() x block_px() canvas pixels, to
+/// be interpolated in between. So every output pixel is resampled once.
 class ComposedMap {
  public:
-    static constexpr int kBlock = 8;  ///< canvas px, even
-
     /// What one camera gives to one block corner.
     struct Corner {
         float x = 0;  ///< camera pixel
@@ -42,6 +40,7 @@ class ComposedMap {
     void SelectUnit(Unit unit);
     void SelectBoth();
 
+    /// Even, and a multiple of PanoramaBlock::kSide.
     [[nodiscard]] int block_px() const { return whole_.spacing_px(); }
     [[nodiscard]] bool is_ring() const { return canvas_.IsRing(); }
     [[nodiscard]] int block_rows() const { return rows_ - 1; }

@@ -11,7 +11,7 @@ namespace hitchview::algo {
 /// Distance between the corners of a fine regular grid over a canvas: even, and about as many
 /// corners on a wide canvas as on a narrow one.
 inline int CornerSpacing_px(const Projection& canvas) {
-    return canvas.width_px > 0 ? 8 : 8;
+    return canvas.width_px > 2048 ? 16 : 8;
 }
 
 /// Something known at the corners of a fine regular grid over the canvas: corner (row, col) lies at

@@ -22,9 +22,9 @@ struct FieldFitOptions {
 /// Fits a field on the mesh to motions known at scattered points: the minimum of
 ///     sum_k w_k |u(p_k) - d_k|^2 + memory sum_v w_v c_v |u_v - predicted_v|^2
 ///         + smoothness integral (|grad u|^2 + |u|^2 / fade^2, the latter where nothing is known)
-/// with u bilinear in the cells. The weights w fall with the residual (Geman and McClure's weights) and
-/// sharpen from solve to solve, so that single wrong motions have no say. Where nothing is known
-/// the field is continued smoothly and fades out. No allocation; not thread-safe.
+/// with u bilinear in the cells. The weights w fall with the residual (Geman and McClure's weights)
+/// and sharpen from solve to solve, so that single wrong motions have no say. Where nothing is
+/// known the field is continued smoothly and fades out. No allocation; not thread-safe.
 class FieldFit {
  public:
     FieldFit(const Mesh& mesh, const FieldFitOptions& options);

@@ -69,7 +69,7 @@ class EdgeRows {
     }
 
  private:
-    static constexpr int kSide = ComposedMap::kBlock / Kind::kScale;
+    static constexpr int kSide = PanoramaBlock::kSide / Kind::kScale;
     static constexpr std::size_t kChannels = Kind::kChannels;
     using Row = std::array<float, kSide>;
     using Rows = std::array<Row, kChannels>;

@@ -12,7 +12,8 @@ namespace hitchview::algo {
 /// Values at the corners of a block: top left, top right, bottom left, bottom right.
 using Corners = std::array<float, 4>;
 
-inline constexpr int kBlockLanes = ComposedMap::kBlock;
+/// Pixels to a side of what is drawn at once, and lanes of the vector kernel.
+inline constexpr int kBlockLanes = 8;
 
 /// Where the vector kernel reads the rows of a block along one axis: at window[r] + first[r] +
 /// i * step[r], the latter two in 1/4096 samples.
@@ -46,14 +47,16 @@ struct BlockSource {
     [[nodiscard]] bool SuitsKernel() const;
 };
 
-/// A square of ComposedMap::kBlock pixels of the panorama, and what is seen in it; between its
-/// corners everything is bilinear.
+/// A small square of the panorama, and what is seen in it; between its corners everything is
+/// bilinear. A block of the map is one such square, or several.
 struct PanoramaBlock {
+    static constexpr int kSide = kBlockLanes;  ///< px
+
     int x = 0;  ///< its top left pixel in the planes it is drawn to
     int y = 0;
-    int phase_px = 0;  ///< of the pattern where a camera is missing: canvas x + y of that pixel
-    int width = ComposedMap::kBlock;  ///< less at the right and lower edge of the canvas; even
-    int height = ComposedMap::kBlock;
+    int phase_px = 0;   ///< of the pattern where a camera is missing: canvas x + y of that pixel
+    int width = kSide;  ///< less at the right and lower edge of the canvas; even
+    int height = kSide;
     FixedVector<BlockSource, kMaxCameras> sources;
     bool camera_missing = false;  ///< one that would be seen here gave no picture
 

@@ -10,7 +10,7 @@
 namespace hitchview::algo {
 namespace {
 
-constexpr int kBlock = ComposedMap::kBlock;
+constexpr int kBlock = PanoramaBlock::kSide;
 constexpr int kStrip = 16;  // blocks
 
 /// Memory for the pixels of a strip of blocks.
@@ -50,7 +50,21 @@ class StripPicture {
     alignas(64) std::array<std::uint8_t, kWidth * kBlock / 4> v_;
 };
 
-/// Which sources of the map are seen in the blocks of a strip; bit s is source s.
+/// Values at the corners of a part, from those at the corners of its block.
+Corners ValuesAt(const BlockPart& part, const Corners& block) {
+    if (part.count == 1) return block;
+    const auto at = [&](int down, int across) {
+        const float v = static_cast<float>(down) / static_cast<float>(part.count);
+        const float u = static_cast<float>(across) / static_cast<float>(part.count);
+        const float top = block[0] + u * (block[1] - block[0]);
+        const float bottom = block[2] + u * (block[3] - block[2]);
+        return top + v * (bottom - top);
+    };
+    return {at(part.down, part.across), at(part.down, part.across + 1),
+            at(part.down + 1, part.across), at(part.down + 1, part.across + 1)};
+}
+
+/// Which sources of the map are seen in some blocks of a row; bit s is source s.
 class BlockSources {
  public:
     BlockSources(const ComposedMap& map, int row, int first_col, int cols) {
@@ -65,7 +79,7 @@ class BlockSources {
         }
     }
 
-    /// Of block `i` of the strip: those with a share at one of its corners, and a place in the
+    /// Of block `i` of them: those with a share at one of its corners, and a place in the
     /// camera at all four.
     [[nodiscard]] unsigned of(int i) const {
         const auto at = static_cast<std::size_t>(i);
@@ -86,26 +100,33 @@ class BlockSources {
     std::array<unsigned, kStrip + 1> seen_{};
 };
 
-void ReadCorners(const ComposedMap& map, int s, int row, int col, BlockSource& source) {
-    const ComposedMap::Corner* upper = &map.corner(s, row, col);
-    const ComposedMap::Corner* lower = &map.corner(s, row + 1, col);
-    source.x = {upper[0].x, upper[1].x, lower[0].x, lower[1].x};
-    source.y = {upper[0].y, upper[1].y, lower[0].y, lower[1].y};
-    source.weight = {upper[0].weight, upper[1].weight, lower[0].weight, lower[1].weight};
+void ReadCorners(const ComposedMap& map, int s, const BlockPart& part, BlockSource& source) {
+    const ComposedMap::Corner* upper = &map.corner(s, part.row, part.col);
+    const ComposedMap::Corner* lower = &map.corner(s, part.row + 1, part.col);
+    source.x = ValuesAt(part, {upper[0].x, upper[1].x, lower[0].x, lower[1].x});
+    source.y = ValuesAt(part, {upper[0].y, upper[1].y, lower[0].y, lower[1].y});
+    source.weight =
+        ValuesAt(part, {upper[0].weight, upper[1].weight, lower[0].weight, lower[1].weight});
 }
 
 /// False, and nothing done, where the shift is too small to show.
-bool ShiftSource(const MultibandBlend& bands, int s, int row, int col, BlockSource& source) {
+bool ShiftSource(const MultibandBlend& bands, int s, const BlockPart& part, BlockSource& source) {
     constexpr float kLeast = 0.25F;
     float most = 0;
     for (std::size_t k = 0; k < 4; ++k) {
         const MultibandBlend::Colour colour =
-            bands.shift(s, row + static_cast<int>(k / 2), col + static_cast<int>(k % 2));
+            bands.shift(s, part.row + static_cast<int>(k / 2), part.col + static_cast<int>(k % 2));
         most = std::max(most, colour.abs().maxCoeff());
         for (std::size_t channel = 0; channel < 3; ++channel)
             source.shift[channel][k] = colour[static_cast<int>(channel)];
     }
-    return most > kLeast;
+    if (most <= kLeast) return false;
+    for (Corners& channel : source.shift) channel = ValuesAt(part, channel);
+    return true;
+}
+
+int RowsOf(const PanoramaPlanes& out) {
+    return (out.height_px + kBlock - 1) / kBlock;
 }
 
 }  // namespace
@@ -136,7 +157,7 @@ void PanoramaRenderer::Render(const ComposedMap& map, const RigFrames& frames, N
                               const PanoramaPlanes& out, TaskRunner& runner) const {
     const Samplers cameras = SamplersOf(map, frames);
     const Scene scene{map, cameras, nullptr, no_data};
-    runner.Run(map.block_rows(), [&](int row) { RenderBlockRow(scene, out, row); });
+    runner.Run(RowsOf(out), [&](int row) { RenderRow(scene, out, row); });
 }
 
 void PanoramaRenderer::RenderBlended(const ComposedMap& map, const RigFrames& frames,
@@ -144,40 +165,45 @@ void PanoramaRenderer::RenderBlended(const ComposedMap& map, const RigFrames& fr
                                      TaskRunner& runner) const {
     const Samplers cameras = SamplersOf(map, frames);
     const Scene scene{map, cameras, &bands, NoData::kPattern};
-    runner.Run(map.block_rows(), [&](int row) { RenderBlockRow(scene, out, row); });
+    runner.Run(RowsOf(out), [&](int row) { RenderRow(scene, out, row); });
 }
 
-void PanoramaRenderer::RenderBlockRow(const Scene& scene, const PanoramaPlanes& out, int row) {
+/// Squares that are drawn at once.
+void PanoramaRenderer::RenderRow(const Scene& scene, const PanoramaPlanes& out, int row) {
     Strip strip;
-    for (int first = 0; first < scene.map.block_cols(); first += kStrip) {
+    for (int first = 0; first * kBlock < out.width_px; first += kStrip) {
         GatherStrip(scene, row, first, strip);
-        const std::span blocks(strip.blocks.data(), static_cast<std::size_t>(strip.count));
-        DrawBlocks(blocks, strip.picture.planes());
-        for (const PanoramaBlock& block : blocks) {
-            if (!block.suits_kernel()) block.RenderPixels(scene.no_data, strip.picture.planes());
-        }
+        for (int i = 0; i < strip.count; ++i)
+            strip.blocks[static_cast<std::size_t>(i)].Render(scene.no_data, strip.picture.planes());
         strip.picture.CopyTo(out, first * kBlock, row * kBlock);
     }
 }
 
-void PanoramaRenderer::GatherStrip(const Scene& scene, int row, int first_col, Strip& strip) {
-    strip.count = std::min(kStrip, scene.map.block_cols() - first_col);
-    const BlockSources sources(scene.map, row, first_col, strip.count);
+void PanoramaRenderer::GatherStrip(const Scene& scene, int row, int first, Strip& strip) {
+    const int to_a_block = scene.map.block_px() / kBlock;
+    const int first_col = first / to_a_block;
+    const int cols = std::min(kStrip / to_a_block, scene.map.block_cols() - first_col);
+    const BlockSources sources(scene.map, row / to_a_block, first_col, cols);
+    strip.count = cols * to_a_block;
     for (int i = 0; i < strip.count; ++i) {
         PanoramaBlock& block = strip.blocks[static_cast<std::size_t>(i)];
         block.x = i * kBlock;
-        block.phase_px = (first_col + i + row) * kBlock;
-        Gather(scene, row, first_col + i, sources.of(i), block);
+        block.phase_px = (first + i + row) * kBlock;
+        const int col = i / to_a_block;
+        Gather(scene,
+               {row / to_a_block, first_col + col, row % to_a_block, i % to_a_block, to_a_block},
+               sources.of(col), block);
         block.Prepare();
     }
 }
 
 /// `sources`: bit s is source s of the map.
-void PanoramaRenderer::Gather(const Scene& scene, int row, int col, unsigned sources,
+void PanoramaRenderer::Gather(const Scene& scene, const BlockPart& part, unsigned sources,
                               PanoramaBlock& block) {
     block.sources.clear();
     block.camera_missing = false;
-    const bool shifts = scene.bands != nullptr && sources != 0 && scene.bands->Shifts(row, col);
+    const bool shifts =
+        scene.bands != nullptr && sources != 0 && scene.bands->Shifts(part.row, part.col);
     for (; sources != 0; sources &= sources - 1) {
         const int s = std::countr_zero(sources);
         const CameraSampler& camera = scene.cameras[static_cast<std::size_t>(s)];
@@ -187,8 +213,8 @@ void PanoramaRenderer::Gather(const Scene& scene, int row, int col, unsigned sou
         }
         BlockSource& source = block.sources.emplace_back();
         source.camera = &camera;
-        ReadCorners(scene.map, s, row, col, source);
-        source.shifted = shifts && ShiftSource(*scene.bands, s, row, col, source);
+        ReadCorners(scene.map, s, part, source);
+        source.shifted = shifts && ShiftSource(*scene.bands, s, part, source);
     }
 }
 

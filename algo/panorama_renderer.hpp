@@ -36,12 +36,20 @@ class PanoramaRenderer {
     };
 
     struct Strip;
+    /// A square that is drawn at once, as a part of a block of the map.
+    struct BlockPart {
+        int row = 0;  ///< block of the map
+        int col = 0;
+        int down = 0;  ///< which of its squares
+        int across = 0;
+        int count = 1;  ///< squares to a side of a block
+    };
 
     [[nodiscard]] Samplers SamplersOf(const ComposedMap& map, const RigFrames& frames) const;
-    static void Gather(const Scene& scene, int row, int col, unsigned sources,
+    static void Gather(const Scene& scene, const BlockPart& part, unsigned sources,
                        PanoramaBlock& block);
-    static void RenderBlockRow(const Scene& scene, const PanoramaPlanes& out, int row);
-    static void GatherStrip(const Scene& scene, int row, int first_col, Strip& strip);
+    static void RenderRow(const Scene& scene, const PanoramaPlanes& out, int row);
+    static void GatherStrip(const Scene& scene, int row, int first, Strip& strip);
 
     CameraGains gains_;
 };

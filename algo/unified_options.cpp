@@ -15,6 +15,11 @@ double AnalysisScale(const Projection& view, double overlap_rad) {
     return std::min(1.0, wanted_px / view.width_px);
 }
 
+/// What is given in px is for a ring with corners 8 px apart: px of this canvas to one of those.
+double Fineness(const Projection& canvas) {
+    return CornerSpacing_px(canvas) / 8.0;
+}
+
 /// Nothing is uncovered by a ring's heading or by a free border: the bound is how far the picture
 /// may lag a bend or leave its place. What pulls back grows long before it.
 void BoundFreely(const Projection& canvas, const Projection& view, PathSmootherOptions& smoother) {
@@ -84,8 +89,8 @@ StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double ka
     if (canvas.IsRing()) {  // samples are dense, and the ground tilts with each unit
         options.max_stretch = kMaxStretch / std::max(kappa, 1 - kappa);
         options.fit.memory = 0.5;
-        options.fit.change_px = 1.5;
-        options.fit.outlier_px = 3;
+        options.fit.change_px = 1.5 * Fineness(canvas);
+        options.fit.outlier_px = 3 * Fineness(canvas);
     }
     return options;
 }
@@ -96,10 +101,38 @@ SeamOptions SeamOptionsOf(const Projection& canvas) {
         options.path.keep_cost = 1;
         options.path.least_win = 0.05F;
         options.path.least_gain = 0.3F;
-        options.path.glide_px = 16;
+        options.half_width_px *= Fineness(canvas);
+        options.path.glide_px = 16 * Fineness(canvas);
         options.path.dearest_way = 30;
     }
     return options;
+}
+
+DetailFieldOptions DetailOptions(const Projection& canvas, double kappa) {
+    const double fineness = Fineness(canvas);
+    DetailFieldOptions options{.kappa = kappa};
+    for (double* px : {&options.spread_px, &options.outlier_px, &options.most_doubt_px,
+                       &options.unknown_px, &options.scanlines.lowest_px,
+                       &options.scanlines.step_px, &options.scanlines.tolerance_px})
+        *px *= fineness;
+    return options;
+}
+
+SeamDetailOptions ShownDetailOptions(const Projection& canvas, double kappa) {
+    SeamDetailOptions options{.kappa = kappa};
+    options.core_px *= Fineness(canvas);
+    options.fade_px *= Fineness(canvas);
+    return options;
+}
+
+SeamCostOptions SeamCostOptionsOf(const Projection& canvas) {
+    SeamCostOptions options;
+    options.doubt_weight /= static_cast<float>(Fineness(canvas));
+    return options;
+}
+
+double MostResidual_px(const Projection& view) {
+    return 2 * Fineness(view);
 }
 
 OverlapDiscrepancyOptions DiscrepancyOptions(const Projection& canvas, double kappa) {
@@ -137,7 +170,7 @@ PathSmootherOptions HitchSmootherOptions(const Projection& view) {
     smoother.velocity_smoothing = 0.15;
     smoother.weakest_pull = 0.03;
     smoother.strongest_pull = 3.0;
-    smoother.wall = {8, view.IsRing() ? 0.02 : 8, view.IsRing() ? 0.02 : 0.03};
+    smoother.wall = {8 * Fineness(view), view.IsRing() ? 0.02 : 8, view.IsRing() ? 0.02 : 0.03};
     return smoother;
 }
 

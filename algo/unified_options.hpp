@@ -3,8 +3,11 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "algo/detail_field.hpp"
 #include "algo/overlap_discrepancy.hpp"
 #include "algo/path_smoother.hpp"
+#include "algo/seam_cost.hpp"
+#include "algo/seam_detail.hpp"
 #include "algo/stitching_motion_field.hpp"
 #include "algo/trailer_placement.hpp"
 #include "algo/unit_analysis.hpp"
@@ -39,6 +42,11 @@ double MaxMeshParallax_px(const Projection& canvas);
 UnitAnalysisOptions AnalysisOptions(const Projection& view, double overlap_rad);
 StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double kappa);
 SeamOptions SeamOptionsOf(const Projection& canvas);
+SeamCostOptions SeamCostOptionsOf(const Projection& canvas);
+DetailFieldOptions DetailOptions(const Projection& canvas, double kappa);
+SeamDetailOptions ShownDetailOptions(const Projection& canvas, double kappa);
+/// Bound of the per-vertex offset of a view, px.
+double MostResidual_px(const Projection& view);
 /// Of single frames of a recording.
 OverlapDiscrepancyOptions DiscrepancyOptions(const Projection& canvas, double kappa);
 TrailerPlacementOptions PlacementOptions(const Projection& canvas, double analysis_scale);

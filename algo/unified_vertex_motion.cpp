@@ -11,10 +11,8 @@ using Eigen::Vector2d;
 using Eigen::Vector2f;
 using Eigen::Vector3d;
 
-/// The per-vertex offset: share kept per frame, and its bound (shake is above 1 Hz, the road
-/// below).
+/// Share of the per-vertex offset that is kept per frame: shake is above 1 Hz, the road below.
 constexpr float kResidualKept = 0.80F;
-constexpr float kResidualBound_px = 2.0F;
 /// Offset kept per frame while the motion is unknown.
 constexpr double kDecay = 0.9;
 
@@ -40,8 +38,7 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
     if (has_trailer()) {
         if (canvas.IsRing()) {
             parallax_ = std::make_unique<std::array<RigParallax, kRecords>>();
-            detail_ =
-                std::make_unique<DetailField>(canvas, DetailFieldOptions{.kappa = options.kappa});
+            detail_ = std::make_unique<DetailField>(canvas, DetailOptions(canvas, options.kappa));
             for (const Unit unit : kUnits)
                 on_canvas_[unit] = std::make_unique<PictureMap>(view(unit), canvas);
         }
@@ -163,9 +160,10 @@ void UnifiedVertexMotion::Stabilise(std::int64_t index, Unit unit) {
 void UnifiedVertexMotion::UpdateViewOffset(const RigMotion& record, Unit unit) {
     if (!options_.stabilize) return;
     VertexField& offset = view_offset_[unit];
+    const auto most_px = static_cast<float>(MostResidual_px(view(unit)));
     offset = (kResidualKept * (offset - record.intra[unit].residual))
-                 .cwiseMax(-kResidualBound_px)
-                 .cwiseMin(kResidualBound_px);
+                 .cwiseMax(-most_px)
+                 .cwiseMin(most_px);
 }
 
 /// Placement of the stabilised trailer view on the stabilised tractor view. It holds no shake, only

@@ -8,10 +8,10 @@
 #include "algo/composition.hpp"
 #include "algo/detail_field.hpp"
 #include "algo/path_smoother.hpp"
+#include "algo/picture_map.hpp"
 #include "algo/rig_motion.hpp"
 #include "algo/stitching_motion_field.hpp"
 #include "algo/vertex_motion.hpp"
-#include "algo/picture_map.hpp"
 
 namespace hitchview::algo {
 
@@ -73,7 +73,7 @@ class UnifiedVertexMotion final : public VertexMotion {
     double max_parallax_px_;
     double max_mesh_parallax_px_;
     StitchingMotionField stitching_;
-    std::unique_ptr<DetailField> detail_;               // ring with a trailer
+    std::unique_ptr<DetailField> detail_;             // ring with a trailer
     PerUnit<std::unique_ptr<PictureMap>> on_canvas_;  // likewise
     PerUnit<std::unique_ptr<UnitSmoother>> smoother_;
     std::unique_ptr<PathSmoother> hitch_smoother_;

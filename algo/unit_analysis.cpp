@@ -34,8 +34,7 @@ void UnitAnalysis::FindSights() {
         if (!camera || view_.CameraAt(track.late_px) != camera) continue;
         const SightLine early =
             geometry_.SightOf(*camera, picture.Ray(view_.ToView(track.early_px)));
-        const SightLine late =
-            geometry_.SightOf(*camera, picture.Ray(view_.ToView(track.late_px)));
+        const SightLine late = geometry_.SightOf(*camera, picture.Ray(view_.ToView(track.late_px)));
         sights_.push_back({early.direction, late.direction, early.origin_m});
     }
 }

@@ -17,7 +17,7 @@ set(may_include_lcmtypes "^$")
 set(may_use_hal "^[a-z0-9_]+$")
 set(may_use_algo "^[a-z0-9_]+$|^Eigen/|^opencv2/|^hwy/|^(immintrin|arm_neon)\\.h$")
 
-# Where app may name a concrete driver: file -> pattern. What demo_verb.cpp may, demo_*, scenario_* and truth_* may.
+# Where app may name a concrete driver: file -> pattern. What demo_verb.cpp may, bench_*, demo_*, scenario_*, simulated_* and truth_* may.
 set(drivers_in_app/board.cpp "^drivers/")
 set(drivers_in_app/view_verb.cpp "^drivers/lcm_subscriber\\.hpp$")
 set(drivers_in_app/demo_verb.cpp "^drivers/simulated_[a-z_]+\\.hpp$")
@@ -64,7 +64,7 @@ function(check_own place file folder header)
     if(folder STREQUAL "drivers" AND header MATCHES "^drivers/")
         check_driver("${place}" "${file}" "${header}")
     elseif(folder STREQUAL "app" AND header MATCHES "^drivers/")
-        string(REGEX REPLACE "^app/(demo|scenario|truth)_[a-z_]+\\.[ch]pp$" "app/demo_verb.cpp" program "${file}")
+        string(REGEX REPLACE "^app/(bench|demo|scenario|simulated|truth)_[a-z_]+\\.[ch]pp$" "app/demo_verb.cpp" program "${file}")
         if(NOT DEFINED drivers_in_${program} OR NOT header MATCHES "${drivers_in_${program}}")
             complain("${place}" "only app/board.cpp may name a concrete driver, not ${header}")
         endif()
