@@ -11,15 +11,31 @@ namespace {
 
 using nlohmann::json;
 
-/// Resident memory of this process; null where /proc does not tell.
-json ResidentBytes() {
-    std::ifstream status("/proc/self/status");
-    for (std::string word; status >> word;) {
-        if (word != "VmRSS:") continue;
-        std::uint64_t kilobytes = 0;
-        if (status >> kilobytes) return kilobytes * 1024;
+template <typename T>
+json OrNull(const std::optional<T>& known) {
+    return known ? json(*known) : json();
+}
+
+json HeapCallsByThread(const MemorySummary& memory) {
+    if (!memory.heap_calls) return nullptr;
+    json threads = json::object();
+    for (const auto& [name, calls] : memory.heap_calls->threads) {
+        json& sum = threads[name];
+        sum = (sum.is_null() ? 0 : sum.get<std::uint64_t>()) + calls;
     }
-    return nullptr;
+    return threads;
+}
+
+/// Figures since READY, beside the rest of the report.
+void AddMemory(const MemorySummary& memory, json& report) {
+    const auto& calls = memory.heap_calls;
+    report["heap_calls_after_ready"] = calls ? json(calls->frame_path) : json();
+    report["heap_calls_by_thread"] = HeapCallsByThread(memory);
+    report["heap_calls_files"] = calls ? json(calls->files) : json();
+    report["rss_bytes_at_ready"] = OrNull(memory.at_ready.rss_bytes);
+    report["rss_bytes"] = OrNull(memory.at_end.rss_bytes);
+    report["minor_faults_after_ready"] = memory.at_end.minor_faults - memory.at_ready.minor_faults;
+    report["major_faults_after_ready"] = memory.at_end.major_faults - memory.at_ready.major_faults;
 }
 
 json Stages(const AllStageTimes& times) {
@@ -86,10 +102,8 @@ json MakeReport(const RunSummary& run, const json& quality) {
          run.duration_s > 0 ? json(static_cast<double>(run.frames) / run.duration_s) : json()},
         {"stages", Stages(run.times)},
         {"deadline_misses", run.deadline_misses},
-        {"heap_calls_after_ready", nullptr},
-        {"heap_calls_files", nullptr},
-        {"rss_bytes", ResidentBytes()},
         {"calibration_id", run.calibration_id.empty() ? json() : json(run.calibration_id)}};
+    AddMemory(run.memory, report);
     for (const algo::Unit unit : algo::kUnits) {
         if (run.cameras[unit] > 0) report["units"][ToString(unit)] = EmptyUnit();
     }

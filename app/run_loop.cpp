@@ -122,6 +122,26 @@ RunSummary EmptySummary(const RigConfig& config, const Board& board, const RigGe
     return summary;
 }
 
+/// From READY on, which is its construction, memory is watched; until its destruction at most.
+class MemoryWatch {
+ public:
+    explicit MemoryWatch(bool trap) : at_ready_(ReadResources()) {
+        StartCountingHeapCalls(trap ? OnHeapCall::kTrap : OnHeapCall::kCount);
+    }
+    ~MemoryWatch() { StopCountingHeapCalls(); }
+    MemoryWatch(const MemoryWatch&) = delete;
+    MemoryWatch& operator=(const MemoryWatch&) = delete;
+
+    /// Ends the watch.
+    MemorySummary Finish() {
+        StopCountingHeapCalls();
+        return {CountHeapCalls(), at_ready_, ReadResources()};
+    }
+
+ private:
+    Resources at_ready_;
+};
+
 /// Drives one opened rig; see RunRig.
 class Run {
  public:
@@ -137,6 +157,7 @@ class Run {
         FrameSynchronizer synchronizer(board_.cameras());
         start_ = board_.clock().Now();
         outputs_.Start(start_);
+        MemoryWatch memory(options_.trap_alloc);
         std::uint64_t taken = 0;
         while (!stop && !Limited(options_, taken)) {
             auto set = synchronizer.WaitSet();
@@ -153,6 +174,7 @@ class Run {
         while (const ShownPanorama* shown = pipeline_.Flush()) {
             if (const auto done = Show(*shown, hook); !done) return done;
         }
+        summary_.memory = memory.Finish();
         summary_.times = pipeline_.times();
         summary_.duration_s = std::chrono::duration<double>(board_.clock().Now() - start_).count();
         return hal::Done{};

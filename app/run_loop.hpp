@@ -8,7 +8,9 @@
 
 #include "algo/paper_stages.hpp"
 #include "app/config.hpp"
+#include "app/heap_calls.hpp"
 #include "app/pipeline.hpp"
+#include "app/resources.hpp"
 
 namespace hitchview::app {
 
@@ -28,6 +30,7 @@ struct RunOptions {
     bool write_video = false;  ///< out/panorama.avi
     bool write_views = false;  ///< out/tractor.avi, out/trailer.avi
     bool publish = false;      ///< over LCM
+    bool trap_alloc = false;   ///< the first heap call after READY stops the program
 };
 
 /// The articulation over a run, as the images told it.
@@ -38,6 +41,13 @@ struct ArticulationSummary {
     double variances = 0;  ///< sum over `frames`, rad^2
 
     void Add(const algo::Articulation& articulation);
+};
+
+/// Memory from READY to the last panorama.
+struct MemorySummary {
+    std::optional<HeapCallCounts> heap_calls{};  ///< empty where they cannot be counted
+    Resources at_ready{};
+    Resources at_end{};
 };
 
 /// What a run did.
@@ -53,6 +63,7 @@ struct RunSummary {
     algo::PerOverlap<std::uint64_t> locked_frames;
     ArticulationSummary articulation{};
     algo::PerUnit<int> cameras;
+    MemorySummary memory{};
     bool ring = false;
 };
 
