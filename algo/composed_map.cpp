@@ -33,7 +33,8 @@ ComposedMap::ComposedMap(const Projection& canvas,
       rows_((canvas.height_px + kBlock - 1) / kBlock + 1),
       cols_((canvas.width_px + kBlock - 1) / kBlock + 1),
       seams_(canvas, rows_, cols_, kBlock, seam),
-      seam_cost_(rows_ * cols_, {}) {
+      seam_cost_(rows_ * cols_, {}),
+      shown_detail_(canvas, Eigen::Vector2f::Zero()) {
     const auto corners = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_);
     for (const Unit unit : kUnits) {
         first_source_[unit] = static_cast<int>(sources_.size());

@@ -42,6 +42,7 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
             parallax_ = std::make_unique<std::array<RigParallax, kRecords>>();
             detail_ =
                 std::make_unique<DetailField>(canvas, DetailFieldOptions{.kappa = options.kappa});
+            TakeMemoryForDetail();
             for (const Unit unit : kUnits)
                 on_canvas_[unit] = std::make_unique<ViewOnCanvas>(view(unit), canvas);
         }
@@ -245,6 +246,13 @@ void UnifiedVertexMotion::UpdateStitching(const RigMotion& record, const Matrix3
         stitching_.Update(canvas_pairs_);
     }
     stitching_.Extend();
+}
+
+void UnifiedVertexMotion::TakeMemoryForDetail() {
+    composition_.detail = detail_->detail();
+    composition_.detail.Clear();
+    composition_.doubt_px = detail_->doubt_px();
+    composition_.doubt_px.Clear();
 }
 
 void UnifiedVertexMotion::UpdateDetail(const RigParallax& parallax, TaskRunner& runner) {
