@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "app/camera_ahead.hpp"
 #include "drivers/candump_can_bus.hpp"
 #include "drivers/lcm_publisher.hpp"
 #include "drivers/replay_camera.hpp"
@@ -47,6 +48,7 @@ drivers::SimulationOptions Overridden(drivers::SimulationOptions options,
                                       const SimulationConfig& config, hal::Instant period) {
     options.seed = config.seed.value_or(options.seed);
     options.frames = config.frames.value_or(options.frames);
+    options.render_threads = 1;  // each camera is rendered on a thread of its own
     options.period = period;
     if (config.camera_size_px) {
         options.width_px = config.camera_size_px->width_px;
@@ -120,8 +122,9 @@ hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit un
                    "right_front; "
                    "trailer: left, left_rear, rear, right_rear, right)";
         }
-        cameras_[unit].push_back(std::make_unique<drivers::SimulatedCamera>(
-            *simulation_, index, hal::Instant{0}, slots));
+        auto rendered =
+            std::make_unique<drivers::SimulatedCamera>(*simulation_, index, hal::Instant{0}, slots);
+        cameras_[unit].push_back(std::make_unique<CameraAhead>(std::move(rendered), camera.name));
         return hal::Done{};
     }
     auto replay =

@@ -7,6 +7,8 @@
 #include "algo/unified_vertex_motion.hpp"
 #include "app/board.hpp"
 #include "app/frame_synchronizer.hpp"
+#include "app/panorama_loop.hpp"
+#include "app/real_time.hpp"
 #include "app/run_outputs.hpp"
 #include "app/worker_pool.hpp"
 
@@ -53,10 +55,6 @@ hal::Checked<hal::Done> MakeFolder(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder, refused);
     if (refused) return folder.string() + ": " + refused.message();
     return hal::Done{};
-}
-
-std::string CameraFailure(hal::Error error) {
-    return std::string("a camera gives no more frames: ") + hal::ToString(error);
 }
 
 /// The estimation of a run.
@@ -122,102 +120,16 @@ RunSummary EmptySummary(const RigConfig& config, const Board& board, const RigGe
     return summary;
 }
 
-/// From READY on, which is its construction, memory is watched; until its destruction at most.
-class MemoryWatch {
- public:
-    explicit MemoryWatch(bool trap) : at_ready_(ReadResources()) {
-        StartCountingHeapCalls(trap ? OnHeapCall::kTrap : OnHeapCall::kCount);
+/// How close the bounded stores of the run came to running dry.
+std::vector<PoolSummary> Pools(const RigConfig& config, Board& board, const RunOutputs& outputs) {
+    std::vector<PoolSummary> pools;
+    for (const algo::Unit unit : algo::kUnits) {
+        for (std::size_t i = 0; i < config.units[unit].cameras.size(); ++i)
+            pools.push_back({config.units[unit].cameras[i].name, board.cameras()[unit][i]->pool()});
     }
-    ~MemoryWatch() { StopCountingHeapCalls(); }
-    MemoryWatch(const MemoryWatch&) = delete;
-    MemoryWatch& operator=(const MemoryWatch&) = delete;
-
-    /// Ends the watch.
-    MemorySummary Finish() {
-        StopCountingHeapCalls();
-        return {CountHeapCalls(), at_ready_, ReadResources()};
-    }
-
- private:
-    Resources at_ready_;
-};
-
-/// Drives one opened rig; see RunRig.
-class Run {
- public:
-    Run(Board& board, Pipeline& pipeline, RunOutputs& outputs, const RunOptions& options,
-        RunSummary& summary)
-        : board_(board),
-          pipeline_(pipeline),
-          outputs_(outputs),
-          options_(options),
-          summary_(summary) {}
-
-    hal::Checked<hal::Done> Loop(const std::atomic<bool>& stop, const ShownHook& hook) {
-        FrameSynchronizer synchronizer(board_.cameras());
-        start_ = board_.clock().Now();
-        outputs_.Start(start_);
-        MemoryWatch memory(options_.trap_alloc);
-        std::uint64_t taken = 0;
-        while (!stop && !Limited(options_, taken)) {
-            auto set = synchronizer.WaitSet();
-            if (!set && set.error() == hal::Error::kEndOfStream) break;
-            if (!set) return CameraFailure(set.error());
-            ++taken;
-            if (options_.realtime && !WaitForTurn(set->sequence)) continue;
-            const ShownPanorama* shown = pipeline_.Process(std::move(*set));
-            CountDeadline();
-            if (shown != nullptr) {
-                if (const auto done = Show(*shown, hook); !done) return done;
-            }
-        }
-        while (const ShownPanorama* shown = pipeline_.Flush()) {
-            if (const auto done = Show(*shown, hook); !done) return done;
-        }
-        summary_.memory = memory.Finish();
-        summary_.times = pipeline_.times();
-        summary_.duration_s = std::chrono::duration<double>(board_.clock().Now() - start_).count();
-        return hal::Done{};
-    }
-
- private:
-    /// False when the set's turn is over: it is dropped, so that no latency queues up.
-    bool WaitForTurn(std::uint32_t sequence) {
-        const hal::Instant due = start_ + board_.period() * sequence;
-        if (board_.clock().Now() > due + board_.period()) {
-            ++summary_.dropped;
-            return false;
-        }
-        board_.clock().SleepUntil(due);
-        return true;
-    }
-
-    void CountDeadline() {
-        summary_.newest_total_ms =
-            pipeline_.times()[static_cast<std::size_t>(Stage::kTotal)].last_ms();
-        if (summary_.newest_total_ms > summary_.period_ms) ++summary_.deadline_misses;
-    }
-
-    hal::Checked<hal::Done> Show(const ShownPanorama& shown, const ShownHook& hook) {
-        ++summary_.frames;
-        for (const algo::Overlap overlap : algo::kOverlaps) {
-            if (shown.composition->seams[overlap] == algo::SeamState::kLocked)
-                ++summary_.locked_frames[overlap];
-        }
-        if (const auto& known = shown.composition->articulation) summary_.articulation.Add(*known);
-        if (options_.offline && options_.progress) options_.progress("shown", summary_.frames);
-        const auto done = outputs_.Show(shown, pipeline_, summary_);
-        if (done && hook) hook(shown, pipeline_);
-        return done;
-    }
-
-    Board& board_;
-    Pipeline& pipeline_;
-    RunOutputs& outputs_;
-    const RunOptions& options_;
-    RunSummary& summary_;
-    hal::Instant start_{};
-};
+    outputs.AddPools(pools);
+    return pools;
+}
 
 }  // namespace
 
@@ -233,6 +145,10 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
                                 const std::atomic<bool>& stop, const ShownHook& hook) {
     auto calibration = Calibration(config);
     if (!calibration) return calibration.error();
+    if (options.realtime) {
+        if (const auto prepared = PrepareRealTime(config.real_time); !prepared)
+            return prepared.error();
+    }
     const algo::UnifiedVertexMotionOptions motion_options = MotionOptions(config, options);
     const int held = motion_options.lookahead_frames + 2;
     auto board = Board::Open(config, held);
@@ -240,7 +156,10 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
     if (!rig) return rig.error();
 
-    WorkerPool workers(options.workers.value_or(config.workers));
+    WorkerPool workers(options.workers.value_or(config.workers),
+                       options.realtime ? config.schedule : ThreadSchedule{});
+    if (options.realtime && config.schedule.given())
+        LogSteps({{"workers scheduled", workers.refusal()}});
     const Motion motion = MakeMotion(rig.value(), motion_options, options);
     Pipeline pipeline(rig.value(), *motion.any, workers);
     if (const auto primed = Prime(**board, pipeline); !primed) return primed.error();
@@ -258,12 +177,16 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     if (const auto made = MakeFolder(options.out); !made) return made.error();
     auto outputs = RunOutputs::Open(config, options, **board, summary, pipeline.format());
     if (!outputs) return outputs.error();
-    const auto done = Run(**board, pipeline, **outputs, options, summary).Loop(stop, hook);
+    if (options.realtime) EnterRealTime(config.schedule);
+    PanoramaLoop loop({**board, *motion.any, pipeline, **outputs}, options, summary);
+    const auto done = loop.Run(stop, hook);
     pipeline.Start();  // gives the last leases back while the cameras live
     const auto finished = (*outputs)->Finish();
     if (!done) return done.error();
     if (!finished) return finished.error();
     summary.dropped += (*outputs)->dropped();
+    summary.publishing = (*outputs)->times();
+    summary.pools = Pools(config, **board, **outputs);
     return summary;
 }
 

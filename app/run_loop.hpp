@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "algo/paper_stages.hpp"
 #include "app/config.hpp"
@@ -50,16 +51,24 @@ struct MemorySummary {
     Resources at_end{};
 };
 
+struct PoolSummary {
+    std::string name;
+    hal::PoolLevel level;
+};
+
 /// What a run did.
 struct RunSummary {
     std::uint64_t frames = 0;           ///< panoramas shown
     std::uint64_t dropped = 0;          ///< frame sets never shown
+    std::uint64_t lightened = 0;        ///< frame sets whose inter matching was left out
     std::uint64_t deadline_misses = 0;  ///< frame sets that took longer than a period
     double period_ms = 0;
     double duration_s = 0;  ///< from the first frame set to the last panorama
     std::string calibration_id;
-    double newest_total_ms = 0;  ///< of the frame set processed last
-    AllStageTimes times{};       ///< when the run has ended
+    double newest_total_ms = 0;        ///< of the frame set processed last
+    AllStageTimes times{};             ///< when the run has ended
+    PublishTimes publishing{};         ///< same
+    std::vector<PoolSummary> pools{};  ///< same
     algo::PerOverlap<std::uint64_t> locked_frames;
     ArticulationSummary articulation{};
     algo::PerUnit<int> cameras;

@@ -129,6 +129,11 @@ void RunOutputs::Publish(const ShownPanorama& shown, const RunSummary& run) {
                         .status = Status(shown, run, start_)});
 }
 
+void RunOutputs::AddPools(std::vector<PoolSummary>& pools) const {
+    if (publisher_) pools.push_back({"panorama", publisher_->pool()});
+    if (telemetry_) pools.push_back({"hitch_angle", telemetry_->pool()});
+}
+
 hal::Checked<hal::Done> RunOutputs::Finish() {
     if (publisher_) publisher_->Finish();
     for (VideoWriter* video : {panorama_.get(), views_[algo::Unit::kTractor].get(),
