@@ -127,8 +127,10 @@ hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit un
         cameras_[unit].push_back(std::make_unique<CameraAhead>(std::move(rendered), camera.name));
         return hal::Done{};
     }
-    auto replay =
-        drivers::ReplayCamera::Open(camera.replay.string(), {.name = camera.name, .slots = slots});
+    // Where the rig file states the pace, the frames were captured at it.
+    const double rate_hz = config.period ? 1e9 / static_cast<double>(config.period->count()) : 0;
+    auto replay = drivers::ReplayCamera::Open(
+        camera.replay.string(), {.name = camera.name, .rate_hz = rate_hz, .slots = slots});
     if (!replay) return config.file.string() + ": camera " + camera.name + ": " + replay.error();
     if (period_.count() == 0)
         period_ = hal::Instant(static_cast<std::int64_t>(1e9 / (*replay)->rate_hz()));

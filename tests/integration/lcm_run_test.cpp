@@ -100,7 +100,7 @@ class LcmRunTest : public testing::Test {
  protected:
     static void SetUpTestSuite() {
         folder_ = std::make_unique<TemporaryFolder>();
-        tests::RecordSmallDrive(*folder_, kFrames);
+        tests::RecordSmallDrive(*folder_, kFrames, kFrames);
     }
     static void TearDownTestSuite() { folder_.reset(); }
 

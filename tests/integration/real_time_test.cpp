@@ -14,14 +14,14 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFrames = 240;
+constexpr int kFrames = 160;
 constexpr const char* kCanvas = "{projection: cylinder, size_px: [1024, 180]}";
 
 class RealTimeRunTest : public testing::Test {
  protected:
     static void SetUpTestSuite() {
         folder_ = std::make_unique<tests::TemporaryFolder>();
-        tests::RecordSmallDrive(*folder_, kFrames);
+        tests::RecordSmallDrive(*folder_, 16, kFrames);
     }
     static void TearDownTestSuite() { folder_.reset(); }
 
@@ -43,6 +43,11 @@ class RealTimeRunTest : public testing::Test {
 };
 
 std::unique_ptr<tests::TemporaryFolder> RealTimeRunTest::folder_;
+
+std::int64_t GrownBytes(const json& report) {
+    return report.at("rss_bytes").get<std::int64_t>() -
+           report.at("rss_bytes_at_ready").get<std::int64_t>();
+}
 
 /// This process and those it starts, on one CPU until destroyed.
 class OneCpu {
@@ -76,9 +81,7 @@ TEST_F(RealTimeRunTest, MemoryIsResidentFromReadyOn) {
     // Far fewer than one for each frame set: the decoders' first pictures.
     EXPECT_LT(report.at("minor_faults_after_ready"), kFrames / 2);
     EXPECT_EQ(report.at("major_faults_after_ready"), 0);
-    const double grown_bytes =
-        report.at("rss_bytes").get<double>() - report.at("rss_bytes_at_ready").get<double>();
-    EXPECT_LT(grown_bytes, 2e6);
+    EXPECT_LT(GrownBytes(report), 2'000'000);
 }
 
 TEST_F(RealTimeRunTest, TooLittleTimeDropsFrameSetsAndLatencyStays) {
@@ -91,10 +94,11 @@ TEST_F(RealTimeRunTest, TooLittleTimeDropsFrameSetsAndLatencyStays) {
     EXPECT_GT(dropped, kFrames / 4);
     EXPECT_GT(frames, 0);
     EXPECT_EQ(report.at("heap_calls_after_ready"), 0);
-    EXPECT_LT(report.at("minor_faults_after_ready"), kFrames / 2);
+    EXPECT_LT(GrownBytes(report), 2'000'000);
     EXPECT_LT(kPeriod_ms, report.at("stages").at("total").at("p50_ms"));
     // What queues up would add up to the whole recording.
     const json& latency = report.at("stages").at("latency");
+    EXPECT_GT(latency.at("p50_ms"), 0);
     EXPECT_LT(latency.at("p99_ms").get<double>(),
               600 + 3 * report.at("stages").at("total").at("max_ms").get<double>());
 }
