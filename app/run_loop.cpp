@@ -120,15 +120,17 @@ RunSummary EmptySummary(const RigConfig& config, const Board& board, const RigGe
     return summary;
 }
 
-/// How close the bounded stores of the run came to running dry.
-std::vector<PoolSummary> Pools(const RigConfig& config, Board& board, const RunOutputs& outputs) {
-    std::vector<PoolSummary> pools;
+/// Adds what cameras and outputs know when they have ended.
+void Complete(const RigConfig& config, Board& board, const RunOutputs& outputs,
+              RunSummary& summary) {
+    summary.dropped += outputs.dropped();
+    summary.publishing = outputs.times();
     for (const algo::Unit unit : algo::kUnits) {
         for (std::size_t i = 0; i < config.units[unit].cameras.size(); ++i)
-            pools.push_back({config.units[unit].cameras[i].name, board.cameras()[unit][i]->pool()});
+            summary.pools.push_back(
+                {config.units[unit].cameras[i].name, board.cameras()[unit][i]->pool()});
     }
-    outputs.AddPools(pools);
-    return pools;
+    outputs.AddPools(summary.pools);
 }
 
 }  // namespace
@@ -146,8 +148,8 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     auto calibration = Calibration(config);
     if (!calibration) return calibration.error();
     if (options.realtime) {
-        if (const auto prepared = PrepareRealTime(config.real_time); !prepared)
-            return prepared.error();
+        const auto prepared = PrepareRealTime(config.real_time);
+        if (!prepared) return prepared.error();
     }
     const algo::UnifiedVertexMotionOptions motion_options = MotionOptions(config, options);
     const int held = motion_options.lookahead_frames + 2;
@@ -165,13 +167,12 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     if (const auto primed = Prime(**board, pipeline); !primed) return primed.error();
     // A recording starts again from its first frame.
     board = Board::Open(config, held);
-    if (!board) return board.error();
-    if (motion.offline != nullptr) {
+    if (board && motion.offline != nullptr) {
         if (const auto learnt = Learn(**board, *motion.offline, options, workers, stop); !learnt)
             return learnt.error();
         board = Board::Open(config, held);
-        if (!board) return board.error();
     }
+    if (!board) return board.error();
 
     RunSummary summary = EmptySummary(config, **board, rig.value(), *calibration);
     if (const auto made = MakeFolder(options.out); !made) return made.error();
@@ -184,9 +185,7 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     const auto finished = (*outputs)->Finish();
     if (!done) return done.error();
     if (!finished) return finished.error();
-    summary.dropped += (*outputs)->dropped();
-    summary.publishing = (*outputs)->times();
-    summary.pools = Pools(config, **board, **outputs);
+    Complete(config, **board, **outputs, summary);
     return summary;
 }
 

@@ -156,13 +156,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "rig.yaml:6: stabilisation is no key, must be one of schema, canvas, calibration, "
                 "units, simulation, stabilization, stitching, placement, threads, real_time, "
                 "period_ms, can, publish"},
-        BadFile{kPlane + "threads: {priority: 100, affinity: []}\n",
+        BadFile{kPlane + "threads: {priority: 100, affinity: [0, -1]}\n"
+                         "real_time: {lock_memory: always}\n",
                 "rig.yaml:6: threads.priority is 100, must be 0 to 99\n"
-                "rig.yaml:6: threads.affinity is [], must be a list of 1 to 256"},
-        BadFile{kPlane + "threads: {affinity: [0, -1]}\n",
-                "rig.yaml:6: threads.affinity[1] is -1, must be 0 to 255"},
-        BadFile{kPlane + "real_time: {lock_memory: always}\n",
-                "rig.yaml:6: real_time.lock_memory is always, must be false, try or required"},
+                "rig.yaml:6: threads.affinity[1] is -1, must be 0 to 255\n"
+                "rig.yaml:7: real_time.lock_memory is always, must be one of false, try, required"},
         BadFile{kPlane + "stabilization: {lookahead: 3}\n",
                 "rig.yaml:6: stabilization.lookahead is no key, must be one of enabled, "
                 "lookahead_frames, border, cropping, smoother"},
