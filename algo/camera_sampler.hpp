@@ -2,77 +2,96 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
+#include <cmath>
 #include <cstdint>
 
 #include "algo/camera_frame.hpp"
 
 namespace hitchview::algo {
 
-/// What a camera's values are shown as.
-struct CameraLut {
-    std::array<std::uint8_t, 256> luma;
-    std::array<std::uint8_t, 256> chroma;
-};
-
-/// Reads a camera's picture between its pixels, bilinear, in fixed point. Borrows both.
+/// One camera's picture and how its values are shown: luma times its gain, colour's distance from
+/// grey too, both in full range. Borrows the pixels.
 class CameraSampler {
  public:
-    CameraSampler() = default;
-    CameraSampler(const CameraFrame& frame, const CameraLut& lut) : frame_(&frame), lut_(&lut) {}
+    /// What the vector kernels multiply with; fixed point.
+    struct Tone {
+        bool as_taken;               ///< nothing changes; the rest is not read
+        std::uint16_t luma_black;    ///< of a byte, 7 fractional bits
+        std::uint16_t luma_factor;   ///< 13 fractional bits
+        std::int16_t chroma_factor;  ///< 12 fractional bits
+    };
 
-    /// True inside the picture: from the centre of its first pixel to that of its last.
-    [[nodiscard]] bool Sees(float x, float y) const {
-        return x >= 0 && y >= 0 && x <= static_cast<float>(frame_->width_px - 1) &&
-               y <= static_cast<float>(frame_->height_px - 1);
+    CameraSampler() = default;
+    /// `gain`: (0.25, 4).
+    CameraSampler(const CameraFrame& frame, float gain)
+        : frame_(frame), gain_(gain), tone_(ToneOf(frame.range, gain)) {
+        planes_[0] = frame.LumaSamples();
+        if (!frame.has_chroma()) return;
+        planes_[1] = frame.ChromaSamples(0);
+        planes_[2] = frame.ChromaSamples(1);
     }
-    /// Both by luma coordinates; outside the picture the nearest edge's.
-    [[nodiscard]] std::array<std::uint8_t, 1> Luma(float x, float y) const {
-        const Place px = Split(x, frame_->width_px - 1);
-        const Place py = Split(y, frame_->height_px - 1);
-        return {lut_->luma[Read<1>(frame_->luma, frame_->luma_stride_bytes, px, py)]};
+
+    [[nodiscard]] const CameraFrame& frame() const { return frame_; }
+    [[nodiscard]] const Tone& tone() const { return tone_; }
+
+    /// True inside the picture, `margin_px` or more from the centres of its outermost pixels.
+    [[nodiscard]] bool Sees(float x, float y, float margin_px = 0) const {
+        return x >= margin_px && y >= margin_px &&
+               x <= static_cast<float>(frame_.width_px - 1) - margin_px &&
+               y <= static_cast<float>(frame_.height_px - 1) - margin_px;
+    }
+    /// Read between the pixels, bilinear, by luma coordinates; outside the picture the nearest
+    /// edge's. Grey levels.
+    [[nodiscard]] std::array<float, 1> Luma(float x, float y) const {
+        return {Shown(gain_ * FullLuma(frame_.range, Read(planes_[0], x, y)))};
     }
     /// u and v.
-    [[nodiscard]] std::array<std::uint8_t, 2> Chroma(float x, float y) const {
-        const Place px = Split(ToChroma(x), frame_->width_px / 2 - 1);
-        const Place py = Split(ToChroma(y), frame_->height_px / 2 - 1);
-        const int stride_bytes = frame_->chroma_stride_bytes;
-        return {lut_->chroma[Read<2>(frame_->chroma, stride_bytes, px, py)],
-                lut_->chroma[Read<2>(frame_->chroma + 1, stride_bytes, px, py)]};
+    [[nodiscard]] std::array<float, 2> Chroma(float x, float y) const {
+        if (!frame_.has_chroma()) return {128, 128};
+        const float cx = CameraFrame::ChromaX(x);
+        const float cy = frame_.ChromaY(y);
+        const auto shown = [&](const SamplePlane& plane) {
+            const float value = Read(plane, cx, cy) - 128;
+            return Shown(128 + gain_ * FullChroma(frame_.range, value));
+        };
+        return {shown(planes_[1]), shown(planes_[2])};
     }
 
  private:
-    static constexpr int kFixed = 8;  // bits of a pixel coordinate's fraction
-    static constexpr int kOne = 1 << kFixed;
+    static float Shown(float value) { return std::clamp(value, 0.0F, 255.0F); }
 
-    struct Place {
-        int whole;
-        int fraction;  // 0..kOne
-    };
-
-    /// Splits a coordinate so that whole and whole + 1 lie in 0..last, whatever the coordinate.
-    static Place Split(float value, int last) {
-        const int fixed = std::clamp(static_cast<int>(value * kOne + 0.5F), 0, last << kFixed);
-        const int whole = std::min(fixed >> kFixed, last - 1);
-        return {whole, fixed - (whole << kFixed)};
-    }
-    static float ToChroma(float luma_coordinate) { return 0.5F * luma_coordinate - 0.25F; }
-
-    /// kStep bytes from one sample to the next.
-    template <int kStep>
-    static std::size_t Read(const std::uint8_t* plane, int stride_bytes, const Place& x,
-                            const Place& y) {
-        const std::uint8_t* a =
-            plane + static_cast<std::ptrdiff_t>(y.whole) * stride_bytes + x.whole * kStep;
-        const std::uint8_t* b = a + stride_bytes;
-        const int top = a[0] * (kOne - x.fraction) + a[kStep] * x.fraction;
-        const int bottom = b[0] * (kOne - x.fraction) + b[kStep] * x.fraction;
-        const int sum = top * (kOne - y.fraction) + bottom * y.fraction;
-        return static_cast<std::size_t>((sum + (1 << (2 * kFixed - 1))) >> (2 * kFixed));
+    static Tone ToneOf(SampleRange range, float gain) {
+        const float luma = gain * (FullLuma(range, 1) - FullLuma(range, 0));
+        const float chroma = gain * FullChroma(range, 1);
+        const bool limited = range == SampleRange::kLimited;
+        return {.as_taken = !limited && std::abs(gain - 1) < 1e-4F,
+                .luma_black = static_cast<std::uint16_t>(limited ? 16 << 7 : 0),
+                .luma_factor = static_cast<std::uint16_t>(std::lround(luma * (1 << 13))),
+                .chroma_factor = static_cast<std::int16_t>(std::lround(chroma * (1 << 12)))};
     }
 
-    const CameraFrame* frame_ = nullptr;
-    const CameraLut* lut_ = nullptr;
+    static float Read(const SamplePlane& plane, float x, float y) {
+        x = std::clamp(x, 0.0F, static_cast<float>(plane.cols - 1));
+        y = std::clamp(y, 0.0F, static_cast<float>(plane.rows - 1));
+        const auto left = static_cast<int>(x);
+        const auto top = static_cast<int>(y);
+        const int right = std::min(left + 1, plane.cols - 1) * plane.step_bytes;
+        const float fx = x - static_cast<float>(left);
+        const float fy = y - static_cast<float>(top);
+        const std::uint8_t* a = plane.row(top);
+        const std::uint8_t* b = plane.row(std::min(top + 1, plane.rows - 1));
+        const auto between = [&](const std::uint8_t* row) {
+            const int from = row[left * plane.step_bytes];
+            return static_cast<float>(from) + fx * static_cast<float>(row[right] - from);
+        };
+        const float upper = between(a);
+        return upper + fy * (between(b) - upper);
+    }
+
+    CameraFrame frame_;
+    float gain_ = 1;
+    Tone tone_{};
+    std::array<SamplePlane, 3> planes_;
 };
 
 }  // namespace hitchview::algo

@@ -9,7 +9,7 @@ namespace hitchview::algo {
 namespace {
 
 using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Vector2f;
 
 /// Share of the unit beyond the seam: it fills what the preferred unit leaves uncovered.
 constexpr float kFiller = 1e-3F;
@@ -24,25 +24,29 @@ bool Inside(const UnitGeometry& geometry, int camera, const Vector2d& pixel) {
 
 }  // namespace
 
+ComposedMap::UnitMap::UnitMap(const Projection& canvas, const UnitGeometry& unit_geometry)
+    : geometry(unit_geometry), on_view(canvas, unit_geometry.view()), table(unit_geometry) {}
+
 ComposedMap::ComposedMap(const Projection& canvas,
                          const PerUnit<std::optional<UnitGeometry>>& geometry,
                          const SeamOptions& seam)
     : canvas_(canvas),
       canvas_mesh_(canvas),
-      geometry_(&geometry),
-      rows_((canvas.height_px + kBlock - 1) / kBlock + 1),
-      cols_((canvas.width_px + kBlock - 1) / kBlock + 1),
-      seams_(canvas, rows_, cols_, kBlock, seam),
+      whole_(canvas, Vector2f::Zero()),
+      rows_(whole_.rows()),
+      cols_(whole_.cols()),
+      seams_(canvas, rows_, cols_, whole_.spacing_px(), seam),
       seam_cost_(rows_ * cols_, {}),
-      shown_detail_(canvas, Eigen::Vector2f::Zero()) {
+      shown_detail_(canvas, Vector2f::Zero()) {
     const auto corners = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_);
     for (const Unit unit : kUnits) {
         first_source_[unit] = static_cast<int>(sources_.size());
         covered_[unit].assign(corners, 0);
         if (!geometry[unit]) continue;
+        units_[unit] = std::make_unique<UnitMap>(canvas, *geometry[unit]);
         for (int i = 0; i < geometry[unit]->cameras(); ++i) {
-            sources_.push_back(
-                {unit, i, std::vector<Corner>(corners), std::vector<float>(corners)});
+            sources_.push_back({unit, i, std::vector<Corner>(corners), std::vector<float>(corners),
+                                std::vector<Columns>(static_cast<std::size_t>(rows_))});
         }
     }
 }
@@ -63,28 +67,37 @@ void ComposedMap::Build(const Composition& composition, const RigPictures& pictu
 
 void ComposedMap::BuildFor(const Composition& composition, const RigPictures* pictures,
                            TaskRunner& runner) {
-    for (const Unit unit : kUnits) M_view_canvas_[unit] = composition.M_canvas_view[unit].inverse();
-    runner.Run(rows_, [&](int row) { LocateRow(composition, row); });
+    for (const Unit unit : kUnits) {
+        if (!units_[unit]) continue;
+        units_[unit]->on_view.Update(composition.M_canvas_view[unit].inverse(),
+                                     composition.view_offset[unit], runner);
+    }
+    runner.Run(rows_, [&](int row) {
+        MeasureDiscrepancy(composition, row);
+        LocateRow(composition, row);
+    });
     UpdateSeams(composition, pictures, runner);
     FadeDetail(composition, runner);
     selected_.reset();
     runner.Run(rows_, [&](int row) { WeightRow(row); });
 }
 
-void ComposedMap::LocateRow(const Composition& composition, int row) {
-    for (const Unit unit : kUnits) {
-        if (!(*geometry_)[unit]) continue;
-        for (int col = 0; col < cols_; ++col) {
-            LocateCorner(composition, unit, row, col,
-                         WholeDiscrepancy(canvas_mesh_, composition, CornerPixel(row, col)));
-        }
+void ComposedMap::MeasureDiscrepancy(const Composition& composition, int row) {
+    for (int col = 0; col < cols_; ++col) {
+        Vector2f& e = whole_.at(row, col);
+        e = Sample(canvas_mesh_, composition.discrepancy, whole_.Pixel(row, col)).cast<float>();
+        if (!composition.detail.empty()) e += composition.detail.at(row, col);
     }
+}
+
+void ComposedMap::LocateRow(const Composition& composition, int row) {
+    for (int col = 0; col < cols_; ++col) LocateCorner(composition, row, col);
 }
 
 /// The seams were chosen with all of the detail everywhere.
 void ComposedMap::FadeDetail(const Composition& composition, TaskRunner& runner) {
     shown_detail_ = composition.detail;
-    if (shown_detail_.empty() || !(*geometry_)[Unit::kTrailer]) return;
+    if (shown_detail_.empty() || !units_[Unit::kTrailer]) return;
     FadeFromSeams(canvas_mesh_, composition.discrepancy, composition.detail, seams_,
                   {.kappa = composition.kappa}, runner, shown_detail_);
     runner.Run(rows_, [&](int row) { LocateFadedRow(composition, row); });
@@ -93,36 +106,38 @@ void ComposedMap::FadeDetail(const Composition& composition, TaskRunner& runner)
 void ComposedMap::LocateFadedRow(const Composition& composition, int row) {
     constexpr float kNoChange_px = 0.02F;
     for (int col = 0; col < cols_; ++col) {
-        const Eigen::Vector2f& shown = shown_detail_.at(row, col);
-        if ((shown - composition.detail.at(row, col)).cwiseAbs().maxCoeff() < kNoChange_px)
-            continue;
-        const Vector2d e = Sample(canvas_mesh_, composition.discrepancy, CornerPixel(row, col)) +
-                           shown.cast<double>();
-        for (const Unit unit : kUnits) LocateCorner(composition, unit, row, col, e);
+        const Vector2f hidden = composition.detail.at(row, col) - shown_detail_.at(row, col);
+        if (hidden.cwiseAbs().maxCoeff() < kNoChange_px) continue;
+        whole_.at(row, col) -= hidden;
+        LocateCorner(composition, row, col);
     }
 }
 
-void ComposedMap::LocateCorner(const Composition& composition, Unit unit, int row, int col,
-                               const Vector2d& e) {
-    const UnitGeometry& geometry = *(*geometry_)[unit];
+/// For both units: where each reads the corner, and its cameras there.
+void ComposedMap::LocateCorner(const Composition& composition, int row, int col) {
     const std::size_t at = At(row, col);
-    const Vector2d canvas_px = CornerPixel(row, col);
-    const double moves = unit == Unit::kTractor ? -composition.kappa : 1 - composition.kappa;
-    Vector3d ray = M_view_canvas_[unit] * canvas_.Ray(canvas_px + moves * e);
-    const Vector2d view_px = geometry.view().Pixel(ray);
-    const Mesh view_mesh(geometry.view());
-    ray = geometry.view().Ray(view_px - Sample(view_mesh, composition.view_offset[unit], view_px));
+    const Vector2d corner_px = whole_.Pixel(row, col);
+    const Vector2d e = whole_.at(row, col).cast<double>();
+    for (const Unit unit : kUnits) {
+        if (!units_[unit]) continue;
+        const double moves = unit == Unit::kTractor ? -composition.kappa : 1 - composition.kappa;
+        UnitGeometry::Sights sights;
+        units_[unit]->table.See(units_[unit]->on_view.At(corner_px + moves * e), present_[unit],
+                                sights);
+        TakeSights(unit, at, sights);
+    }
+}
 
-    UnitGeometry::Sights sights;
-    geometry.See(ray, present_[unit], sights);
+void ComposedMap::TakeSights(Unit unit, std::size_t at, const UnitGeometry::Sights& sights) {
+    const UnitGeometry& geometry = units_[unit]->geometry;
+    Source* sources = sources_.data() + first_source_[unit];
     for (int i = 0; i < geometry.cameras(); ++i) {
-        Source& source = sources_[static_cast<std::size_t>(first_source_[unit] + i)];
-        source.corners[at].sees = false;
-        source.share[at] = 0;
+        sources[i].corners[at].sees = false;
+        sources[i].share[at] = 0;
     }
     covered_[unit][at] = 0;
     for (const CameraSight& sight : sights) {
-        Source& source = sources_[static_cast<std::size_t>(first_source_[unit] + sight.camera)];
+        Source& source = sources[sight.camera];
         source.corners[at] = {static_cast<float>(sight.pixel.x()),
                               static_cast<float>(sight.pixel.y()), 0, true};
         source.share[at] = static_cast<float>(sight.weight);
@@ -134,14 +149,14 @@ void ComposedMap::LocateCorner(const Composition& composition, Unit unit, int ro
 
 void ComposedMap::UpdateSeams(const Composition& composition, const RigPictures* pictures,
                               TaskRunner& runner) {
-    if (!(*geometry_)[Unit::kTrailer]) return;
+    if (!units_[Unit::kTrailer]) return;
     seams_.FindOverlaps(covered_);
     if (pictures != nullptr)
         runner.Run(rows_, [&](int row) { CompareUnits(composition, *pictures, row); });
     if (!canvas_.IsRing()) {
         PerUnit<double> middle_px;
         for (const Unit unit : kUnits) {
-            const Projection& view = (*geometry_)[unit]->view();
+            const Projection& view = units_[unit]->geometry.view();
             middle_px[unit] =
                 canvas_.Pixel(composition.M_canvas_view[unit] * view.Ray(view.Centre())).x();
         }
@@ -160,9 +175,9 @@ void ComposedMap::CompareUnits(const Composition& composition, const RigPictures
                 seam_cost_.ObserveOne(at);
                 continue;
             }
-            seam_cost_.ObserveBoth(
-                at, PatchOf(pictures, Unit::kTractor, at), PatchOf(pictures, Unit::kTrailer, at),
-                {BendAt(composition, CornerPixel(row, col)), DoubtAt(composition, row, col)});
+            seam_cost_.ObserveBoth(at, PatchOf(pictures, Unit::kTractor, at),
+                                   PatchOf(pictures, Unit::kTrailer, at),
+                                   {BendAt(composition, row, col), DoubtAt(composition, row, col)});
         }
     }
 }
@@ -182,23 +197,28 @@ float ComposedMap::DoubtAt(const Composition& composition, int row, int col) con
     return composition.doubt_px.empty() ? 0 : composition.doubt_px.at(row, col);
 }
 
-float ComposedMap::BendAt(const Composition& composition, const Vector2d& pixel) const {
-    const auto slope = [&](const Vector2d& step) {
-        return (WholeDiscrepancy(canvas_mesh_, composition, pixel + step) -
-                WholeDiscrepancy(canvas_mesh_, composition, pixel - step))
-                   .norm() /
-               (2 * step.norm());
+/// Slope of the whole discrepancy. Without detail it is smooth, and looked at more widely.
+float ComposedMap::BendAt(const Composition& composition, int row, int col) const {
+    const int reach = composition.detail.empty() ? 2 : 1;
+    const auto slope = [&](int down, int across) {
+        const int top = std::max(row - down, 0);
+        const int bottom = std::min(row + down, rows_ - 1);
+        const int left = std::max(col - across, 0);
+        const int right = std::min(col + across, cols_ - 1);
+        const int apart = bottom - top + right - left;
+        return (whole_.at(bottom, right) - whole_.at(top, left)).norm() /
+               static_cast<float>(apart * whole_.spacing_px());
     };
-    const double kStep = composition.detail.empty() ? 2 * kBlock : kBlock;
-    return static_cast<float>(slope({kStep, 0}) + slope({0, kStep}));
+    return slope(0, reach) + slope(reach, 0);
 }
 
 void ComposedMap::WeightRow(int row) {
-    const bool two = (*geometry_)[Unit::kTrailer].has_value();
+    const bool two = units_[Unit::kTrailer] != nullptr;
+    for (Source& source : sources_) source.used[static_cast<std::size_t>(row)] = {cols_, -1};
     for (int col = 0; col < cols_; ++col) {
         const std::size_t at = At(row, col);
         const auto tractor =
-            static_cast<float>(two ? seams_.TractorShare(row, CornerPixel(row, col).x()) : 1.0);
+            static_cast<float>(two ? seams_.TractorShare(row, whole_.Pixel(row, col).x()) : 1.0);
         PerUnit<float> share{{tractor, 1 - tractor}};
         if (selected_) {
             share[*selected_] = 1;
@@ -208,8 +228,12 @@ void ComposedMap::WeightRow(int row) {
                 if (covered_[Other(unit)][at] == 0) share[unit] = std::max(share[unit], kFiller);
             }
         }
-        for (Source& source : sources_)
+        for (Source& source : sources_) {
             source.corners[at].weight = share[source.unit] * source.share[at];
+            if (source.corners[at].weight <= 0) continue;
+            Columns& used = source.used[static_cast<std::size_t>(row)];
+            used = {std::min(used.first, col), col};
+        }
     }
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "algo/camera_frame.hpp"
 #include "algo/composition.hpp"
+#include "algo/picture_map.hpp"
 #include "algo/seam_cost.hpp"
+#include "algo/sight_table.hpp"
 #include "algo/task_runner.hpp"
 #include "algo/unit_geometry.hpp"
 #include "algo/unit_seams.hpp"
@@ -12,11 +15,11 @@
 namespace hitchview::algo {
 
 /// From canvas pixels straight to camera pixels: calibration, placement, stabilisation, stitching
-/// and seam in one map, exact at the corners of blocks of kBlock x kBlock canvas pixels, to be
+/// and seam in one map, known at the corners of blocks of kBlock x kBlock canvas pixels, to be
 /// interpolated in between. So every output pixel is resampled once.
 class ComposedMap {
  public:
-    static constexpr int kBlock = CornerField::kSpacing_px;  ///< canvas px, even
+    static constexpr int kBlock = 8;  ///< canvas px, even
 
     /// What one camera gives to one block corner.
     struct Corner {
@@ -39,6 +42,7 @@ class ComposedMap {
     void SelectUnit(Unit unit);
     void SelectBoth();
 
+    [[nodiscard]] int block_px() const { return whole_.spacing_px(); }
     [[nodiscard]] bool is_ring() const { return canvas_.IsRing(); }
     [[nodiscard]] int block_rows() const { return rows_ - 1; }
     [[nodiscard]] int block_cols() const { return cols_ - 1; }
@@ -52,6 +56,14 @@ class ComposedMap {
     [[nodiscard]] const Corner& corner(int source, int row, int col) const {
         return sources_[static_cast<std::size_t>(source)]
             .corners[static_cast<std::size_t>(row * cols_ + col)];
+    }
+    /// Columns of a row of corners outside which a source has no weight; none if last < first.
+    struct Columns {
+        int first = 0;
+        int last = -1;
+    };
+    [[nodiscard]] const Columns& used(int source, int row) const {
+        return sources_[static_cast<std::size_t>(source)].used[static_cast<std::size_t>(row)];
     }
     /// The part of the composition's detail that was used: all of it at the seams, none far away.
     /// Without corners if the composition has none.
@@ -70,13 +82,24 @@ class ComposedMap {
         Unit unit;
         int camera;  ///< of the unit
         std::vector<Corner> corners;
-        std::vector<float> share;  ///< in the unit's view
+        std::vector<float> share;   ///< in the unit's view
+        std::vector<Columns> used;  ///< of each row
+    };
+
+    /// All that concerns one unit: where the canvas lies on its view, and its cameras there.
+    struct UnitMap {
+        UnitMap(const Projection& canvas, const UnitGeometry& unit_geometry);
+
+        const UnitGeometry& geometry;
+        PictureMap on_view;  ///< where the view is read, its offset included
+        SightTable table;
     };
 
     void BuildFor(const Composition& composition, const RigPictures* pictures, TaskRunner& runner);
     void LocateRow(const Composition& composition, int row);
-    void LocateCorner(const Composition& composition, Unit unit, int row, int col,
-                      const Eigen::Vector2d& e);
+    void MeasureDiscrepancy(const Composition& composition, int row);
+    void LocateCorner(const Composition& composition, int row, int col);
+    void TakeSights(Unit unit, std::size_t at, const UnitGeometry::Sights& sights);
     void FadeDetail(const Composition& composition, TaskRunner& runner);
     void LocateFadedRow(const Composition& composition, int row);
     void UpdateSeams(const Composition& composition, const RigPictures* pictures,
@@ -84,17 +107,17 @@ class ComposedMap {
     void CompareUnits(const Composition& composition, const RigPictures& pictures, int row);
     [[nodiscard]] GreyPatch PatchOf(const RigPictures& pictures, Unit unit, std::size_t at) const;
     [[nodiscard]] float DoubtAt(const Composition& composition, int row, int col) const;
-    [[nodiscard]] float BendAt(const Composition& composition, const Eigen::Vector2d& pixel) const;
+    [[nodiscard]] float BendAt(const Composition& composition, int row, int col) const;
     void WeightRow(int row);
-    static Eigen::Vector2d CornerPixel(int row, int col) { return CornerField::Pixel(row, col); }
     [[nodiscard]] std::size_t At(int row, int col) const {
         return static_cast<std::size_t>(row * cols_ + col);
     }
 
     Projection canvas_;
     Mesh canvas_mesh_;
-    const PerUnit<std::optional<UnitGeometry>>* geometry_;
-    int rows_;  // of corners
+    PerUnit<std::unique_ptr<UnitMap>> units_;
+    CornerField whole_;  // discrepancy with the detail as it is shown
+    int rows_;           // of corners
     int cols_;
     std::vector<Source> sources_;
     PerUnit<int> first_source_;
@@ -103,7 +126,6 @@ class ComposedMap {
     CornerField shown_detail_;
     UnitSeams::Coverage covered_;
     PerUnit<CameraMask> present_;
-    PerUnit<Eigen::Matrix3d> M_view_canvas_;
     std::optional<Unit> selected_;
 };
 

@@ -8,23 +8,29 @@
 
 namespace hitchview::algo {
 
+/// Distance between the corners of a fine regular grid over a canvas: even, and about as many
+/// corners on a wide canvas as on a narrow one.
+inline int CornerSpacing_px(const Projection& canvas) {
+    return canvas.width_px > 0 ? 8 : 8;
+}
+
 /// Something known at the corners of a fine regular grid over the canvas: corner (row, col) lies at
-/// pixel (col kSpacing_px - 0.5, row kSpacing_px - 0.5). Memory is taken at construction.
+/// pixel (col spacing_px - 0.5, row spacing_px - 0.5). Memory is taken at construction.
 template <typename T>
 class CornerGrid {
  public:
-    static constexpr int kSpacing_px = 8;
-
     CornerGrid() = default;  ///< without corners
     CornerGrid(const Projection& canvas, const T& value)
-        : rows_(CornersOver(canvas.height_px)),
-          cols_(CornersOver(canvas.width_px)),
+        : spacing_px_(CornerSpacing_px(canvas)),
+          rows_(CornersOver(canvas.height_px, spacing_px_)),
+          cols_(CornersOver(canvas.width_px, spacing_px_)),
           values_(static_cast<std::size_t>(rows_ * cols_), value) {}
 
     /// Rows or columns of corners for this many pixels.
-    static constexpr int CornersOver(int length_px) {
-        return (length_px + kSpacing_px - 1) / kSpacing_px + 1;
+    static constexpr int CornersOver(int length_px, int spacing_px) {
+        return (length_px + spacing_px - 1) / spacing_px + 1;
     }
+    [[nodiscard]] int spacing_px() const { return spacing_px_; }
     [[nodiscard]] bool empty() const { return values_.empty(); }
     [[nodiscard]] int rows() const { return rows_; }
     [[nodiscard]] int cols() const { return cols_; }
@@ -37,14 +43,14 @@ class CornerGrid {
         values_.clear();
     }
 
-    [[nodiscard]] static Eigen::Vector2d Pixel(int row, int col) {
-        return {col * double{kSpacing_px} - 0.5, row * double{kSpacing_px} - 0.5};
+    [[nodiscard]] Eigen::Vector2d Pixel(int row, int col) const {
+        return {1.0 * col * spacing_px_ - 0.5, 1.0 * row * spacing_px_ - 0.5};
     }
 
     /// Bilinear; outside the nearest edge's value. Not without corners.
     [[nodiscard]] T Sample(const Eigen::Vector2d& canvas_px) const {
-        const double u = std::clamp((canvas_px.x() + 0.5) / kSpacing_px, 0.0, cols_ - 1.0);
-        const double v = std::clamp((canvas_px.y() + 0.5) / kSpacing_px, 0.0, rows_ - 1.0);
+        const double u = std::clamp((canvas_px.x() + 0.5) / spacing_px_, 0.0, cols_ - 1.0);
+        const double v = std::clamp((canvas_px.y() + 0.5) / spacing_px_, 0.0, rows_ - 1.0);
         const int col = std::min(static_cast<int>(u), cols_ - 2);
         const int row = std::min(static_cast<int>(v), rows_ - 2);
         const auto s = static_cast<float>(u - col);
@@ -59,6 +65,7 @@ class CornerGrid {
         return static_cast<std::size_t>(row * cols_ + col);
     }
 
+    int spacing_px_ = 0;
     int rows_ = 0;
     int cols_ = 0;
     std::vector<T> values_;

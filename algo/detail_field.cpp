@@ -9,14 +9,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector2f;
 
-constexpr auto kSpacing_px = static_cast<float>(CornerField::kSpacing_px);
 /// Pull of a corner's neighbours where no sample agrees with what it should be.
 constexpr float kLeastSupport = 0.02F;
 constexpr int kRounds = 3;  // of the robust mean
 
 ScanlineFit ScanlinesOver(const Projection& canvas, const DetailFieldOptions& options) {
-    return {CornerField::CornersOver(canvas.height_px),
-            CornerField::CornersOver(canvas.width_px) / 2, options.scanlines};
+    const int spacing_px = CornerSpacing_px(canvas);
+    return {CornerField::CornersOver(canvas.height_px, spacing_px),
+            CornerField::CornersOver(canvas.width_px, spacing_px) / 2, options.scanlines};
 }
 
 }  // namespace
@@ -24,6 +24,7 @@ ScanlineFit ScanlinesOver(const Projection& canvas, const DetailFieldOptions& op
 DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& options)
     : canvas_(canvas),
       mesh_(canvas),
+      spacing_px_(static_cast<float>(CornerSpacing_px(canvas))),
       options_(options),
       scanlines_{{ScanlinesOver(canvas, options), ScanlinesOver(canvas, options)}},
       wanted_(canvas, Vector2f::Zero()),
@@ -54,13 +55,13 @@ void DetailField::Clear(Overlap overlap) {
 void DetailField::Add(Overlap overlap, const CanvasPair& pair, float weight) {
     const auto& [met, e] = DiscrepancyOf(pair, canvas_, options_.kappa);
     const double x = WrapColumn(met.x(), canvas_.width_px);
-    const double u = (x + 0.5) / kSpacing_px + 0.5;
-    const double v = (met.y() + 0.5) / kSpacing_px + 0.5;
+    const double u = (x + 0.5) / spacing_px_ + 0.5;
+    const double v = (met.y() + 0.5) / spacing_px_ + 0.5;
     const auto col = static_cast<int>(u);
     const auto row = static_cast<int>(v);
     const Range half = HalfOf(overlap);
     if (v < 0 || row >= detail_.rows() || col < half.first || col > half.last) return;
-    const Vector2d corner = CornerField::Pixel(row, col);
+    const Vector2d corner = detail_.Pixel(row, col);
     samples_[Index(row, col)].push_back(
         {(Vector2d(x, met.y()) - corner).cast<float>(), e.cast<float>(), weight});
 }
@@ -106,7 +107,7 @@ void DetailField::Vote(const Range& range, float sign, ScanlineFit& fit) const {
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
             for (const Sample& s : samples_[Index(row, col)]) {
-                const Vector2f share = s.off_px.cwiseAbs() / kSpacing_px;
+                const Vector2f share = s.off_px.cwiseAbs() / spacing_px_;
                 const int down = s.off_px.y() > 0 ? 1 : -1;
                 const int across = s.off_px.x() > 0 ? 1 : -1;
                 vote(row, col, s, (1 - share.x()) * (1 - share.y()));
@@ -123,8 +124,8 @@ DetailField::Neighbours DetailField::Around(int row, int col, const Range& range
     Neighbours around;
     for (int r = std::max(0, row - 1); r <= std::min(detail_.rows() - 1, row + 1); ++r) {
         for (int c = std::max(range.first, col - 1); c <= std::min(range.last, col + 1); ++c) {
-            const Vector2f from{kSpacing_px * static_cast<float>(c - col),
-                                kSpacing_px * static_cast<float>(r - row)};
+            const Vector2f from{spacing_px_ * static_cast<float>(c - col),
+                                spacing_px_ * static_cast<float>(r - row)};
             for (const Sample& s : samples_[Index(r, c)]) {
                 around.x_px[around.count] = s.e_px.x();
                 around.y_px[around.count] = s.e_px.y();
@@ -170,7 +171,7 @@ void DetailField::Subtract(const VertexField& discrepancy, const Range& range) {
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
             wanted_.at(row, col) -=
-                algo::Sample(mesh_, discrepancy, CornerField::Pixel(row, col)).cast<float>();
+                algo::Sample(mesh_, discrepancy, detail_.Pixel(row, col)).cast<float>();
             detail_.at(row, col) = wanted_.at(row, col);
         }
     }
@@ -212,7 +213,7 @@ void DetailField::Doubt(const VertexField& discrepancy, const Range& range) {
 Vector2f DetailField::MissesAt(const VertexField& discrepancy, int row, int col) const {
     constexpr float kLeastWeight = 0.2F;  // what is hard to match is in doubt, too
     const Vector2f e = detail_.at(row, col) +
-                       algo::Sample(mesh_, discrepancy, CornerField::Pixel(row, col)).cast<float>();
+                       algo::Sample(mesh_, discrepancy, detail_.Pixel(row, col)).cast<float>();
     Vector2f misses = Vector2f::Zero();
     for (const Sample& s : samples_[Index(row, col)]) {
         const float weight = std::max(kLeastWeight, s.weight);

@@ -82,6 +82,7 @@ class DetailField {
 
     Projection canvas_;
     Mesh mesh_;
+    float spacing_px_;  // of the corners
     DetailFieldOptions options_;
     std::vector<Samples> samples_;  // of each corner: those nearer to it than to others
     PerOverlap<ScanlineFit> scanlines_;

@@ -23,13 +23,13 @@ double MeanAround(const CameraFrame& frame, float x, float y) {
     const int y0 = static_cast<int>(y) - kPatch / 2;
     if (x0 < 0 || y0 < 0 || x0 + kPatch > frame.width_px || y0 + kPatch > frame.height_px)
         return -1;
+    const SamplePlane luma = frame.LumaSamples();
     int sum = 0;
     for (int r = 0; r < kPatch; ++r) {
-        const std::uint8_t* row =
-            frame.luma + static_cast<std::ptrdiff_t>(y0 + r) * frame.luma_stride_bytes + x0;
-        for (int c = 0; c < kPatch; ++c) sum += row[c];
+        const std::uint8_t* row = luma.row(y0 + r);
+        for (int c = x0; c < x0 + kPatch; ++c) sum += row[c * luma.step_bytes];
     }
-    return sum / double{kPatch * kPatch};
+    return FullLuma(frame.range, static_cast<float>(sum) / (kPatch * kPatch));
 }
 
 }  // namespace

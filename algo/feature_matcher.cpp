@@ -43,7 +43,11 @@ std::array<CornerDetector, GreyPyramid::kMaxLevels> Detectors(
 
 ClassicalMatcher::ClassicalMatcher(int width_px, int height_px,
                                    const ClassicalMatcherOptions& options)
-    : options_(options), detectors_(Detectors(width_px, height_px, options.corners)) {}
+    : options_(options), detectors_(Detectors(width_px, height_px, options.corners)) {
+    for (std::size_t l = 0; l < allowed_.size(); ++l) {
+        allowed_[l] = cv::Mat1b::zeros(detectors_[l].strength().size());
+    }
+}
 
 void ClassicalMatcher::DoGuide(const PerUnit<MatchView>& views, const Expectation& expectation,
                                ViewPairs& pairs) {
@@ -110,20 +114,32 @@ void ClassicalMatcher::DoAcquire(const PerUnit<MatchView>& views, const PerUnit<
     }
 }
 
+/// `mask` within `region`, at the size of a level: so a small region gets all the corners.
+const cv::Mat1b& ClassicalMatcher::AllowedAt(int level, const cv::Mat1b& mask,
+                                             const cv::Rect& region) {
+    cv::Mat1b& allowed = allowed_[static_cast<std::size_t>(level)];
+    // Unlike cv::Mat::setTo, takes no memory.
+    std::fill_n(allowed[0], allowed.total(), std::uint8_t{0});
+    const int step = 1 << level;
+    const auto first = [step](int from) { return (from + step - 1) / step; };
+    for (int y = first(region.y); step * y < region.br().y; ++y) {
+        for (int x = first(region.x); step * x < region.br().x; ++x)
+            allowed(y, x) = mask(step * y, step * x);
+    }
+    return allowed;
+}
+
 void ClassicalMatcher::Describe(const MatchView& view, const cv::Rect& region,
                                 DescribedCorners& described) {
     described.clear();
     const int levels = std::min(options_.descriptor_levels, view.pyramid->levels() - 1);
     for (int l = 0; l < levels; ++l) {
         const auto scale = static_cast<float>(1 << l);
-        detectors_[static_cast<std::size_t>(l)].Detect(view.pyramid->level(l), no_mask_, {},
+        detectors_[static_cast<std::size_t>(l)].Detect(view.pyramid->level(l),
+                                                       AllowedAt(l, *view.mask, region), {},
                                                        options_.corners_per_level, corners_);
         for (const Corner& corner : corners_) {
             const Vector2f at = corner.position_px * scale;
-            if (!region.contains(cv::Point(static_cast<int>(at.x()), static_cast<int>(at.y()))) ||
-                !Allows(*view.mask, at)) {
-                continue;
-            }
             const auto descriptor = DescribePatch(*view.pyramid, l, corner.position_px);
             if (descriptor) described.push_back({at, *descriptor});
         }

@@ -92,13 +92,14 @@ class ClassicalMatcher final : public FeatureMatcher {
                    ViewPairs& pairs) const;
     bool Align(const PerUnit<MatchView>& views, Unit from, const Eigen::Vector2f& at,
                const Eigen::Vector2f& guess, int coarsest, ViewPair& pair) const;
+    const cv::Mat1b& AllowedAt(int level, const cv::Mat1b& mask, const cv::Rect& region);
     void Describe(const MatchView& view, const cv::Rect& region, DescribedCorners& described);
 
     ClassicalMatcherOptions options_;
     std::array<CornerDetector, GreyPyramid::kMaxLevels> detectors_;
     CornerDetector::Corners corners_;
     PerUnit<DescribedCorners> described_;
-    cv::Mat1b no_mask_;
+    std::array<cv::Mat1b, GreyPyramid::kMaxLevels> allowed_;  // of the levels, as detectors_
 };
 
 }  // namespace hitchview::algo

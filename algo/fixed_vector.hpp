@@ -17,6 +17,8 @@ class FixedVector {
         items_[size_++] = item;
         return true;
     }
+    /// One more item, with what was left there. Requires room.
+    T& emplace_back() { return items_[size_++]; }
     void pop_back() { --size_; }
     void clear() { size_ = 0; }
     /// Shortens to the first `size` items.

@@ -25,44 +25,44 @@ int StepAt(const ComposedMap& map, int source, int row, int col) {
     const ComposedMap::Corner& beside =
         map.corner(source, row, col < map.block_cols() ? col + 1 : col - 1);
     if (!beside.sees) return 1;
-    const float block_px = std::hypot(beside.x - here.x, beside.y - here.y);
-    return std::clamp(static_cast<int>(std::lround(block_px * kSampleStep / ComposedMap::kBlock)),
-                      1, 2 * ComposedMap::kBlock);
+    const float moved_px = std::hypot(beside.x - here.x, beside.y - here.y);
+    return std::clamp(
+        static_cast<int>(std::lround(moved_px * kSampleStep / static_cast<float>(map.block_px()))),
+        1, 2 * map.block_px());
 }
 
 /// Mean of kN x kN values round (x, y), of the nearest ones where the square reaches outside.
-template <int kN, int kBytes>
-float MeanOf(const std::uint8_t* plane, int stride_bytes, cv::Size size,
-             const Eigen::Vector2f& centre, int step) {
+template <int kN>
+float MeanOf(const SamplePlane& plane, const Eigen::Vector2f& centre, int step) {
     const float half = 0.5F * static_cast<float>((kN - 1) * step);
     std::array<int, kN> bytes;
     for (int c = 0; c < kN; ++c) {
         const int x = static_cast<int>(centre.x() - half + 0.5F) + c * step;
-        bytes[static_cast<std::size_t>(c)] = kBytes * std::clamp(x, 0, size.width - 1);
+        bytes[static_cast<std::size_t>(c)] = plane.step_bytes * std::clamp(x, 0, plane.cols - 1);
     }
     int sum = 0;
     for (int r = 0; r < kN; ++r) {
         const int y = static_cast<int>(centre.y() - half + 0.5F) + r * step;
-        const std::uint8_t* row =
-            plane + static_cast<std::ptrdiff_t>(std::clamp(y, 0, size.height - 1)) * stride_bytes;
+        const std::uint8_t* row = plane.row(std::clamp(y, 0, plane.rows - 1));
         for (const int byte : bytes) sum += row[byte];
     }
     return static_cast<float>(sum) / (kN * kN);
 }
 
+/// Mean of one colour channel as it is shown; grey where the camera has no colour.
+float MeanChroma(const CameraFrame& frame, int channel, float gain,
+                 const ComposedMap::Corner& corner, int step) {
+    if (!frame.has_chroma()) return 128;
+    const Eigen::Vector2f centre(CameraFrame::ChromaX(corner.x), frame.ChromaY(corner.y));
+    const float mean = MeanOf<kSamples / 2>(frame.ChromaSamples(channel), centre, step);
+    return 128 + gain * FullChroma(frame.range, mean - 128);
+}
+
 MultibandBlend::Colour MeanColour(const CameraFrame& frame, float gain,
                                   const ComposedMap::Corner& corner, int step) {
-    constexpr int kChroma = kSamples / 2;
-    const cv::Size half(frame.width_px / 2, frame.height_px / 2);
-    const Eigen::Vector2f luma_px(corner.x, corner.y);
-    const Eigen::Vector2f chroma_px = 0.5F * luma_px - Eigen::Vector2f::Constant(0.25F);
-    const float y = MeanOf<kSamples, 1>(frame.luma, frame.luma_stride_bytes,
-                                        {frame.width_px, frame.height_px}, luma_px, step);
-    const float u =
-        MeanOf<kChroma, 2>(frame.chroma, frame.chroma_stride_bytes, half, chroma_px, step);
-    const float v =
-        MeanOf<kChroma, 2>(frame.chroma + 1, frame.chroma_stride_bytes, half, chroma_px, step);
-    return {std::min(255.0F, gain * y), 128 + gain * (u - 128), 128 + gain * (v - 128), 0};
+    const float y = MeanOf<kSamples>(frame.LumaSamples(), {corner.x, corner.y}, step);
+    return {std::clamp(gain * FullLuma(frame.range, y), 0.0F, 255.0F),
+            MeanChroma(frame, 0, gain, corner, step), MeanChroma(frame, 1, gain, corner, step), 0};
 }
 
 }  // namespace

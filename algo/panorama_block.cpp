@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+
+#include "algo/block_kernel.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -21,12 +24,14 @@ struct Luma {
         return {out.y};
     }
     static int Stride_bytes(const PanoramaPlanes& out) { return out.y_stride_bytes; }
-    static std::uint8_t Hatched(int x, int y) {
+    static std::uint8_t Hatched(int diagonal) {
         constexpr std::uint8_t kDark = 40;
         constexpr std::uint8_t kLight = 72;
-        return (((x + y) >> 3) & 1) != 0 ? kLight : kDark;
+        return ((diagonal >> 3) & 1) != 0 ? kLight : kDark;
     }
-    static std::uint8_t Empty(bool hatched, int x, int y) { return hatched ? Hatched(x, y) : 0; }
+    static std::uint8_t Empty(bool hatched, int diagonal) {
+        return hatched ? Hatched(diagonal) : 0;
+    }
 };
 
 struct Chroma {
@@ -39,23 +44,25 @@ struct Chroma {
         return {out.u, out.v};
     }
     static int Stride_bytes(const PanoramaPlanes& out) { return out.chroma_stride_bytes; }
-    static std::uint8_t Empty(bool /*hatched*/, int /*x*/, int /*y*/) { return 128; }
+    static std::uint8_t Empty(bool /*hatched*/, int /*diagonal*/) { return 128; }
 };
 
-/// Makes one kind of samples of a block, row by row.
+/// Makes one kind of samples of a block that the kernel cannot make, pixel by pixel: where a
+/// picture ends, where a camera is missing, or where it is reduced much.
 template <typename Kind>
-class BlockRows {
+class EdgeRows {
  public:
-    BlockRows(const PanoramaBlock& block, bool hatched, const PanoramaPlanes& out)
+    EdgeRows(const PanoramaBlock& block, bool hatched, const PanoramaPlanes& out)
         : block_(block),
           hatched_(hatched),
           planes_(Kind::Planes(out)),
           stride_bytes_(Kind::Stride_bytes(out)),
           cols_(static_cast<std::size_t>(block.width / Kind::kScale)) {}
 
-    template <bool kShifted>
-    void Copy() const {
-        for (int row = 0; row < block_.height / Kind::kScale; ++row) CopyRow<kShifted>(row);
+    void Fill() const {
+        for (int row = 0; row < block_.height / Kind::kScale; ++row) {
+            for (std::uint8_t* to : RowOf(row)) std::memset(to, Kind::Empty(false, 0), cols_);
+        }
     }
     void Blend() const {
         for (int row = 0; row < block_.height / Kind::kScale; ++row) BlendRow(row);
@@ -82,28 +89,6 @@ class BlockRows {
             Interpolate(source.shift[Kind::kFirstShift + k], row, shifts[k]);
     }
 
-    template <bool kShifted>
-    void CopyRow(int row) const {
-        const BlockSource& source = block_.sources[0];
-        Row xs;
-        Row ys;
-        Rows shifts;
-        Interpolate(source.x, row, xs);
-        Interpolate(source.y, row, ys);
-        if constexpr (kShifted) InterpolateShift(source, row, shifts);
-        const auto to = RowOf(row);
-        for (std::size_t i = 0; i < cols_; ++i) {
-            const auto values = Kind::Read(source.camera, xs[i], ys[i]);
-            for (std::size_t k = 0; k < kChannels; ++k) {
-                if constexpr (kShifted) {
-                    to[k][i] = Round(static_cast<float>(values[k]) + shifts[k][i]);
-                } else {
-                    to[k][i] = values[k];
-                }
-            }
-        }
-    }
-
     void BlendRow(int row) const {
         Rows sum{};
         Row weight{};
@@ -119,16 +104,16 @@ class BlockRows {
         Row xs;
         Row ys;
         Row ws;
-        Rows shifts;
+        Rows shifts{};
         Interpolate(source.x, row, xs);
         Interpolate(source.y, row, ys);
         Interpolate(source.weight, row, ws);
-        InterpolateShift(source, row, shifts);
+        if (source.shifted) InterpolateShift(source, row, shifts);
         for (std::size_t i = 0; i < kSide; ++i) {
-            if (ws[i] <= 0 || !source.camera.Sees(xs[i], ys[i])) continue;
-            const auto values = Kind::Read(source.camera, xs[i], ys[i]);
+            if (ws[i] <= 0 || !source.camera->Sees(xs[i], ys[i])) continue;
+            const auto values = Kind::Read(*source.camera, xs[i], ys[i]);
             for (std::size_t k = 0; k < kChannels; ++k)
-                sum[k][i] += ws[i] * (static_cast<float>(values[k]) + shifts[k][i]);
+                sum[k][i] += ws[i] * (values[k] + shifts[k][i]);
             weight[i] += ws[i];
         }
     }
@@ -141,7 +126,7 @@ class BlockRows {
         return to;
     }
     [[nodiscard]] std::uint8_t Empty(int row, std::size_t col) const {
-        return Kind::Empty(hatched_, block_.x + static_cast<int>(col), block_.y + row);
+        return Kind::Empty(hatched_, block_.phase_px + static_cast<int>(col) + row);
     }
 
     const PanoramaBlock& block_;
@@ -151,38 +136,62 @@ class BlockRows {
     std::size_t cols_;
 };
 
-template <typename Kind>
-void RenderSamples(const PanoramaBlock& block, NoData no_data, const PanoramaPlanes& out) {
-    const BlockRows<Kind> rows(block, no_data == NoData::kPattern && block.camera_missing, out);
-    if (!block.IsPlain()) {
-        rows.Blend();
-    } else if (block.sources[0].IsAsTaken()) {
-        rows.template Copy<false>();
-    } else {
-        rows.template Copy<true>();
-    }
-}
-
 }  // namespace
 
-bool BlockSource::SeesAll() const {
-    return camera.Sees(x[0], y[0]) && camera.Sees(x[1], y[1]) && camera.Sees(x[2], y[2]) &&
-           camera.Sees(x[3], y[3]);
+bool BlockSource::SeesAll(float margin_px) const {
+    return camera->Sees(x[0], y[0], margin_px) && camera->Sees(x[1], y[1], margin_px) &&
+           camera->Sees(x[2], y[2], margin_px) && camera->Sees(x[3], y[3], margin_px);
 }
 
-bool BlockSource::IsAsTaken() const {
-    constexpr float kLeast = 0.25F;
-    for (const Corners& channel : shift) {
-        for (const float value : channel) {
-            if (std::abs(value) > kLeast) return false;
-        }
+bool BlockSource::SuitsKernel() const {
+    const auto narrow = [](const Corners& along) {
+        return std::abs(along[1] - along[0]) <= kKernelReach_px &&
+               std::abs(along[3] - along[2]) <= kKernelReach_px;
+    };
+    return SeesAll(kKernelMargin_px) && narrow(x) && narrow(y) &&
+           camera->frame().width_px >= kKernelLeast_px &&
+           camera->frame().height_px >= kKernelLeast_px;
+}
+
+bool PanoramaBlock::SourcesSuitKernel() const {
+    return !sources.empty() && std::all_of(sources.begin(), sources.end(),
+                                           [](const auto& source) { return source.SuitsKernel(); });
+}
+
+/// False if nothing has a weight at some corner.
+bool PanoramaBlock::NormalizeWeights() {
+    Corners total{};
+    for (const BlockSource& source : sources) {
+        for (std::size_t k = 0; k < total.size(); ++k) total[k] += source.weight[k];
+    }
+    if (*std::min_element(total.begin(), total.end()) <= 0) return false;
+    for (BlockSource& source : sources) {
+        for (std::size_t k = 0; k < total.size(); ++k) source.weight[k] /= total[k];
     }
     return true;
 }
 
-void PanoramaBlock::Render(NoData no_data, const PanoramaPlanes& out) const {
-    RenderSamples<Luma>(*this, no_data, out);
-    RenderSamples<Chroma>(*this, no_data, out);
+bool PanoramaBlock::PlaceSources() {
+    return std::all_of(sources.begin(), sources.end(),
+                       [](BlockSource& source) { return PlaceSource(source); });
+}
+
+void PanoramaBlock::Prepare() {
+    const bool plain = sources.size() == 1 && !camera_missing;
+    suits_kernel_ = SourcesSuitKernel() && (plain || NormalizeWeights()) && PlaceSources();
+}
+
+void PanoramaBlock::RenderPixels(NoData no_data, const PanoramaPlanes& out) const {
+    const bool hatched = no_data == NoData::kPattern && camera_missing;
+    const EdgeRows<Luma> luma(*this, hatched, out);
+    const EdgeRows<Chroma> chroma(*this, hatched, out);
+    if (sources.empty() && !hatched) {
+        luma.Fill();
+        chroma.Fill();
+    } else {
+        luma.Blend();
+        chroma.Blend();
+    }
 }
 
 }  // namespace hitchview::algo

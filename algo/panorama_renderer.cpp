@@ -1,108 +1,194 @@
 #include "algo/panorama_renderer.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
+#include <span>
+
+#include "algo/block_kernel.hpp"
 
 namespace hitchview::algo {
 namespace {
 
-std::uint8_t Round(float value) {
-    return static_cast<std::uint8_t>(value + 0.5F);
-}
+constexpr int kBlock = ComposedMap::kBlock;
+constexpr int kStrip = 16;  // blocks
 
-CameraLut LutOf(float gain) {
-    CameraLut lut;
-    for (int value = 0; value < 256; ++value) {
-        const auto at = static_cast<std::size_t>(value);
-        const auto luma = gain * static_cast<float>(value);
-        const auto chroma = 128 + gain * static_cast<float>(value - 128);
-        lut.luma[at] = Round(std::min(255.0F, luma));
-        lut.chroma[at] = Round(std::clamp(chroma, 0.0F, 255.0F));
+/// Memory for the pixels of a strip of blocks.
+class StripPicture {
+ public:
+    [[nodiscard]] PanoramaPlanes planes() {
+        return {kWidth, kBlock, y_.data(), kWidth, u_.data(), v_.data(), kWidth / 2};
     }
-    return lut;
-}
-
-/// Where a source of the map is read over one block. False if it has no share there, or does not
-/// see all of it.
-bool PlaceSource(const ComposedMap& map, int s, int row, int col, BlockSource& source) {
-    const std::array<const ComposedMap::Corner*, 4> corners{
-        &map.corner(s, row, col), &map.corner(s, row, col + 1), &map.corner(s, row + 1, col),
-        &map.corner(s, row + 1, col + 1)};
-    bool used = false;
-    bool sees = true;
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-        used = used || corners[k]->weight > 0;
-        sees = sees && corners[k]->sees;
-        source.x[k] = corners[k]->x;
-        source.y[k] = corners[k]->y;
-        source.weight[k] = corners[k]->weight;
+    /// To the canvas with the strip's top left pixel at (x, y), as far as it lies on it.
+    void CopyTo(const PanoramaPlanes& out, int x, int y) const {
+        const int width = std::min(kWidth, out.width_px - x);
+        const int height = std::min(kBlock, out.height_px - y);
+        const auto chroma_at = static_cast<std::ptrdiff_t>(y / 2) * out.chroma_stride_bytes + x / 2;
+        CopyRows(y_.data(), kWidth, width, height,
+                 out.y + static_cast<std::ptrdiff_t>(y) * out.y_stride_bytes + x,
+                 out.y_stride_bytes);
+        CopyRows(u_.data(), kWidth / 2, width / 2, height / 2, out.u + chroma_at,
+                 out.chroma_stride_bytes);
+        CopyRows(v_.data(), kWidth / 2, width / 2, height / 2, out.v + chroma_at,
+                 out.chroma_stride_bytes);
     }
-    return used && sees;
+
+ private:
+    static constexpr int kWidth = kStrip * kBlock;
+
+    static void CopyRows(const std::uint8_t* from, int from_stride_bytes, int bytes, int rows,
+                         std::uint8_t* to, int stride_bytes) {
+        for (int r = 0; r < rows; ++r) {
+            std::memcpy(to + static_cast<std::ptrdiff_t>(r) * stride_bytes,
+                        from + static_cast<std::ptrdiff_t>(r) * from_stride_bytes,
+                        static_cast<std::size_t>(bytes));
+        }
+    }
+
+    alignas(64) std::array<std::uint8_t, kWidth * kBlock> y_;
+    alignas(64) std::array<std::uint8_t, kWidth * kBlock / 4> u_;
+    alignas(64) std::array<std::uint8_t, kWidth * kBlock / 4> v_;
+};
+
+/// Which sources of the map are seen in the blocks of a strip; bit s is source s.
+class BlockSources {
+ public:
+    BlockSources(const ComposedMap& map, int row, int first_col, int cols) {
+        for (int s = 0; s < map.cameras(); ++s) {
+            const ComposedMap::Corner* upper = &map.corner(s, row, first_col);
+            const ComposedMap::Corner* lower = &map.corner(s, row + 1, first_col);
+            const auto reaches = [&](const ComposedMap::Columns& used) {
+                return used.first <= first_col + cols && used.last >= first_col;
+            };
+            if (reaches(map.used(s, row)) || reaches(map.used(s, row + 1)))
+                Add(s, upper, lower, cols);
+        }
+    }
+
+    /// Of block `i` of the strip: those with a share at one of its corners, and a place in the
+    /// camera at all four.
+    [[nodiscard]] unsigned of(int i) const {
+        const auto at = static_cast<std::size_t>(i);
+        return (used_[at] | used_[at + 1]) & seen_[at] & seen_[at + 1];
+    }
+
+ private:
+    void Add(int s, const ComposedMap::Corner* upper, const ComposedMap::Corner* lower, int cols) {
+        for (int i = 0; i <= cols; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            const bool used = upper[i].weight > 0 || lower[i].weight > 0;
+            used_[at] |= static_cast<unsigned>(used) << s;
+            seen_[at] |= static_cast<unsigned>(upper[i].sees && lower[i].sees) << s;
+        }
+    }
+
+    std::array<unsigned, kStrip + 1> used_{};
+    std::array<unsigned, kStrip + 1> seen_{};
+};
+
+void ReadCorners(const ComposedMap& map, int s, int row, int col, BlockSource& source) {
+    const ComposedMap::Corner* upper = &map.corner(s, row, col);
+    const ComposedMap::Corner* lower = &map.corner(s, row + 1, col);
+    source.x = {upper[0].x, upper[1].x, lower[0].x, lower[1].x};
+    source.y = {upper[0].y, upper[1].y, lower[0].y, lower[1].y};
+    source.weight = {upper[0].weight, upper[1].weight, lower[0].weight, lower[1].weight};
 }
 
-void ShiftSource(const MultibandBlend& bands, int s, int row, int col, BlockSource& source) {
-    if (!bands.Shifts(row, col)) return;
+/// False, and nothing done, where the shift is too small to show.
+bool ShiftSource(const MultibandBlend& bands, int s, int row, int col, BlockSource& source) {
+    constexpr float kLeast = 0.25F;
+    float most = 0;
     for (std::size_t k = 0; k < 4; ++k) {
         const MultibandBlend::Colour colour =
             bands.shift(s, row + static_cast<int>(k / 2), col + static_cast<int>(k % 2));
+        most = std::max(most, colour.abs().maxCoeff());
         for (std::size_t channel = 0; channel < 3; ++channel)
             source.shift[channel][k] = colour[static_cast<int>(channel)];
     }
+    return most > kLeast;
 }
 
 }  // namespace
 
-void PanoramaRenderer::SetGains(const CameraGains& gains) {
-    for (const Unit unit : kUnits) {
-        for (std::size_t i = 0; i < kMaxCameras; ++i) {
-            const float given = gains[unit][i];
-            luts_[unit][i] = LutOf(given > 0.25F && given < 4.0F ? given : 1.0F);
-        }
+/// Blocks are gathered some time before they are drawn, so that the drawing of one need not wait
+/// for the gathering of the next. They are drawn to memory of their own: rows of a panorama often
+/// lie a power of two apart and displace each other from the cache unless they are written in one
+/// go.
+struct PanoramaRenderer::Strip {
+    int count = 0;
+    std::array<PanoramaBlock, kStrip> blocks;
+    StripPicture picture;
+};
+
+PanoramaRenderer::Samplers PanoramaRenderer::SamplersOf(const ComposedMap& map,
+                                                        const RigFrames& frames) const {
+    Samplers samplers;
+    for (int s = 0; s < map.cameras(); ++s) {
+        const Unit unit = map.unit_of(s);
+        const auto camera = static_cast<std::size_t>(map.camera_of(s));
+        const float gain = gains_[unit][camera];
+        samplers.push_back({frames[unit][camera], gain > 0.25F && gain < 4.0F ? gain : 1.0F});
     }
+    return samplers;
 }
 
 void PanoramaRenderer::Render(const ComposedMap& map, const RigFrames& frames, NoData no_data,
                               const PanoramaPlanes& out, TaskRunner& runner) const {
-    const Scene scene{map, frames, nullptr, no_data};
+    const Samplers cameras = SamplersOf(map, frames);
+    const Scene scene{map, cameras, nullptr, no_data};
     runner.Run(map.block_rows(), [&](int row) { RenderBlockRow(scene, out, row); });
 }
 
 void PanoramaRenderer::RenderBlended(const ComposedMap& map, const RigFrames& frames,
                                      const MultibandBlend& bands, const PanoramaPlanes& out,
                                      TaskRunner& runner) const {
-    const Scene scene{map, frames, &bands, NoData::kPattern};
+    const Samplers cameras = SamplersOf(map, frames);
+    const Scene scene{map, cameras, &bands, NoData::kPattern};
     runner.Run(map.block_rows(), [&](int row) { RenderBlockRow(scene, out, row); });
 }
 
-void PanoramaRenderer::Gather(const Scene& scene, int row, int col, PanoramaBlock& block) const {
-    block.sources.clear();
-    block.camera_missing = false;
-    for (int s = 0; s < scene.map.cameras(); ++s) {
-        BlockSource source{};
-        if (!PlaceSource(scene.map, s, row, col, source)) continue;
-        const Unit unit = scene.map.unit_of(s);
-        const auto camera = static_cast<std::size_t>(scene.map.camera_of(s));
-        const CameraFrame& frame = scene.frames[unit][camera];
-        if (!frame.present()) {
-            block.camera_missing = true;
-            continue;
+void PanoramaRenderer::RenderBlockRow(const Scene& scene, const PanoramaPlanes& out, int row) {
+    Strip strip;
+    for (int first = 0; first < scene.map.block_cols(); first += kStrip) {
+        GatherStrip(scene, row, first, strip);
+        const std::span blocks(strip.blocks.data(), static_cast<std::size_t>(strip.count));
+        DrawBlocks(blocks, strip.picture.planes());
+        for (const PanoramaBlock& block : blocks) {
+            if (!block.suits_kernel()) block.RenderPixels(scene.no_data, strip.picture.planes());
         }
-        source.camera = {frame, luts_[unit][camera]};
-        if (scene.bands != nullptr) ShiftSource(*scene.bands, s, row, col, source);
-        block.sources.push_back(source);
+        strip.picture.CopyTo(out, first * kBlock, row * kBlock);
     }
 }
 
-void PanoramaRenderer::RenderBlockRow(const Scene& scene, const PanoramaPlanes& out,
-                                      int row) const {
-    constexpr int kBlock = ComposedMap::kBlock;
-    PanoramaBlock block;
-    block.y = row * kBlock;
-    block.height = std::min(kBlock, out.height_px - block.y);
-    for (int col = 0; col < scene.map.block_cols(); ++col) {
-        block.x = col * kBlock;
-        block.width = std::min(kBlock, out.width_px - block.x);
-        Gather(scene, row, col, block);
-        block.Render(scene.no_data, out);
+void PanoramaRenderer::GatherStrip(const Scene& scene, int row, int first_col, Strip& strip) {
+    strip.count = std::min(kStrip, scene.map.block_cols() - first_col);
+    const BlockSources sources(scene.map, row, first_col, strip.count);
+    for (int i = 0; i < strip.count; ++i) {
+        PanoramaBlock& block = strip.blocks[static_cast<std::size_t>(i)];
+        block.x = i * kBlock;
+        block.phase_px = (first_col + i + row) * kBlock;
+        Gather(scene, row, first_col + i, sources.of(i), block);
+        block.Prepare();
+    }
+}
+
+/// `sources`: bit s is source s of the map.
+void PanoramaRenderer::Gather(const Scene& scene, int row, int col, unsigned sources,
+                              PanoramaBlock& block) {
+    block.sources.clear();
+    block.camera_missing = false;
+    const bool shifts = scene.bands != nullptr && sources != 0 && scene.bands->Shifts(row, col);
+    for (; sources != 0; sources &= sources - 1) {
+        const int s = std::countr_zero(sources);
+        const CameraSampler& camera = scene.cameras[static_cast<std::size_t>(s)];
+        if (!camera.frame().present()) {
+            block.camera_missing = true;
+            continue;
+        }
+        BlockSource& source = block.sources.emplace_back();
+        source.camera = &camera;
+        ReadCorners(scene.map, s, row, col, source);
+        source.shifted = shifts && ShiftSource(*scene.bands, s, row, col, source);
     }
 }
 

@@ -13,10 +13,10 @@ namespace hitchview::algo {
 /// tasks.
 class PanoramaRenderer {
  public:
-    PanoramaRenderer() { SetGains({{{{}, {}}}}); }
+    PanoramaRenderer() { SetGains({}); }
 
     /// Gains in (0.25, 4); others count as 1.
-    void SetGains(const CameraGains& gains);
+    void SetGains(const CameraGains& gains) { gains_ = gains; }
 
     void Render(const ComposedMap& map, const RigFrames& frames, NoData no_data,
                 const PanoramaPlanes& out, TaskRunner& runner) const;
@@ -25,18 +25,25 @@ class PanoramaRenderer {
                        const PanoramaPlanes& out, TaskRunner& runner) const;
 
  private:
+    /// The pictures of a map's sources; one without a picture is not present.
+    using Samplers = FixedVector<CameraSampler, 2 * kMaxCameras>;
     /// What is made into a picture.
     struct Scene {
         const ComposedMap& map;
-        const RigFrames& frames;
+        const Samplers& cameras;
         const MultibandBlend* bands;  ///< null: every pixel as the cameras show it
         NoData no_data;
     };
 
-    void RenderBlockRow(const Scene& scene, const PanoramaPlanes& out, int row) const;
-    void Gather(const Scene& scene, int row, int col, PanoramaBlock& block) const;
+    struct Strip;
 
-    PerUnit<std::array<CameraLut, kMaxCameras>> luts_;
+    [[nodiscard]] Samplers SamplersOf(const ComposedMap& map, const RigFrames& frames) const;
+    static void Gather(const Scene& scene, int row, int col, unsigned sources,
+                       PanoramaBlock& block);
+    static void RenderBlockRow(const Scene& scene, const PanoramaPlanes& out, int row);
+    static void GatherStrip(const Scene& scene, int row, int first_col, Strip& strip);
+
+    CameraGains gains_;
 };
 
 }  // namespace hitchview::algo

@@ -1,9 +1,11 @@
 #include "algo/rig_motion.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "algo/feature_mask.hpp"
 #include "algo/guidance.hpp"
+#include "algo/overlap_regions.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -15,11 +17,23 @@ using Eigen::Vector2f;
 constexpr int kAcquireEvery = 6;
 constexpr int kFewestCandidates = 12;
 constexpr int kLockedInliers = 12;
+constexpr double kLockedShare = 0.25;  // of the pairs
+/// How far the trailer may be from where it is predicted when only the overlaps are searched.
+constexpr double kSearched_rad = 5 * std::numbers::pi / 180;
 constexpr int kCoastFrames = 60;
 constexpr float kLatticePitch_px = 9;  // of the analysis view
 /// Nodes of the parallax grid from one pair for the placement to the next.
 constexpr int kPlacementStep = 4;
 constexpr float kPlacementWeight = 0.5F;  // of a match's texture
+
+/// Of a ring's two overlaps; all round where there are none.
+double NarrowerOverlap_rad(const PerUnit<std::optional<UnitGeometry>>& geometry) {
+    const auto& [tractor, trailer] = geometry.of;
+    if (!trailer || !trailer->view().IsRing()) return 2 * std::numbers::pi;
+    const PerUnit<UnitGeometry> both{{*tractor, *trailer}};
+    return std::min(OverlapWidth_rad(both, Overlap::kLeft),
+                    OverlapWidth_rad(both, Overlap::kRight));
+}
 
 }  // namespace
 
@@ -31,10 +45,11 @@ RigMotionEstimator::RigMotionEstimator(const Projection& canvas,
       stitch_(options.stitch),
       primed_(std::make_unique<RigMotion>()) {
     if (geometry[Unit::kTrailer]) trailer_view_ = geometry[Unit::kTrailer]->view();
+    const double overlap_rad = NarrowerOverlap_rad(geometry);
     for (const Unit unit : kUnits) {
         if (!geometry[unit]) continue;
-        analysis_[unit] =
-            std::make_unique<UnitAnalysis>(*geometry[unit], AnalysisOptions(view(unit)));
+        analysis_[unit] = std::make_unique<UnitAnalysis>(*geometry[unit],
+                                                         AnalysisOptions(view(unit), overlap_rad));
     }
     if (trailer_view_) {
         const SemiSurroundView& a = analysis_[Unit::kTractor]->view();
@@ -197,28 +212,28 @@ void RigMotionEstimator::LayLattice() {
 bool RigMotionEstimator::AcquireTrailer(RigMotion& motion) {
     const PerUnit<MatchView> views = MatchViews();
     ViewPairs& pairs = view_pairs_[Overlap::kLeft];
-    const SemiSurroundView& tractor = analysis_[Unit::kTractor]->view();
-    const SemiSurroundView& trailer = analysis_[Unit::kTrailer]->view();
     for (const Overlap overlap : kOverlaps) {
         motion.inter[overlap].clear();
-        PerUnit<cv::Rect> regions{{cv::Rect(0, 0, tractor.width_px(), tractor.height_px()),
-                                   cv::Rect(0, 0, trailer.width_px(), trailer.height_px())}};
-        if (canvas_.IsRing()) {
-            // Left of the vehicle lies left of the middle in the tractor's view, and right of it in
-            // the trailer's, which looks back.
-            const bool left = overlap == Overlap::kLeft;
-            for (const Unit unit : kUnits) {
-                cv::Rect& r = regions[unit];
-                r.width /= 2;
-                if (left == (unit == Unit::kTrailer)) r.x = r.width;
-            }
-        } else if (overlap == Overlap::kLeft) {
-            continue;
-        }
-        matcher_->Acquire(views, regions, pairs);
+        if (!canvas_.IsRing() && overlap == Overlap::kLeft) continue;
+        matcher_->Acquire(views, SearchedRegions(overlap), pairs);
         ToViews(pairs, motion.inter[overlap]);
     }
+    ++searches_;
     return placement_->Acquire(motion.inter);
+}
+
+/// On a ring in turns: what should overlap, which is little to search, and the whole side.
+PerUnit<cv::Rect> RigMotionEstimator::SearchedRegions(Overlap overlap) const {
+    const SemiSurroundView& tractor = analysis_[Unit::kTractor]->view();
+    const SemiSurroundView& trailer = analysis_[Unit::kTrailer]->view();
+    if (!canvas_.IsRing()) {
+        return {{cv::Rect(0, 0, tractor.width_px(), tractor.height_px()),
+                 cv::Rect(0, 0, trailer.width_px(), trailer.height_px())}};
+    }
+    const PerUnit<AnalysedRing> rings{
+        {AnalysedRing{&tractor, tractor_view_}, AnalysedRing{&trailer, *trailer_view_}}};
+    if (searches_ % 2 != 0) return SideRegions(rings, overlap);
+    return OverlapRegions(rings, placement_->M_tractor_trailer(), overlap, kSearched_rad);
 }
 
 void RigMotionEstimator::UpdateSeams(RigMotion& motion) {
@@ -226,7 +241,11 @@ void RigMotionEstimator::UpdateSeams(RigMotion& motion) {
         const int inliers = placement_->inliers()[overlap];
         motion.matches[overlap] = inliers;
         int& unmatched = frames_unmatched_[overlap];
-        unmatched = inliers >= kLockedInliers ? 0 : std::min(unmatched + 1, kCoastFrames);
+        const InterFeatures& pairs =
+            canvas_.IsRing() ? motion.dense[overlap] : motion.inter[overlap];
+        const bool locked = inliers >= kLockedInliers &&
+                            inliers >= kLockedShare * static_cast<double>(pairs.size());
+        unmatched = locked ? 0 : std::min(unmatched + 1, kCoastFrames);
         if (unmatched == 0) {
             motion.seams[overlap] = SeamState::kLocked;
         } else if (!placement_->acquired() || motion.candidates[overlap] < kFewestCandidates) {

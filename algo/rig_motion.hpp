@@ -68,6 +68,7 @@ class RigMotionEstimator {
     void MatchUnits(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion,
                     RigParallax* parallax);
     bool AcquireTrailer(RigMotion& motion);
+    [[nodiscard]] PerUnit<cv::Rect> SearchedRegions(Overlap overlap) const;
     [[nodiscard]] bool LongUnmatched() const;
     void Guide(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion,
                RigParallax* parallax);
@@ -93,6 +94,7 @@ class RigMotionEstimator {
     std::unique_ptr<ArticulationEstimator> articulation_;    // ring only
     PerOverlap<int> frames_unmatched_;
     std::int64_t matched_ = 0;  // frame sets
+    int searches_ = 0;          // for the trailer
     PerOverlap<ViewPairs> view_pairs_;
     std::vector<Eigen::Vector2f> lattice_;  // plane only: px of the tractor's analysis view
     std::unique_ptr<RigMotion> primed_;

@@ -16,18 +16,18 @@ GreyPatch ReadGreyPatch(const CameraFrame& frame, float gain, float x, float y) 
     const int x0 = std::clamp(static_cast<int>(x) - kSide / 2, 0, frame.width_px - kSide);
     const int y0 = std::clamp(static_cast<int>(y) - kSide / 2, 0, frame.height_px - kSide);
     std::array<int, GreyPatch::kCells * GreyPatch::kCells> sum{};
+    const SamplePlane luma = frame.LumaSamples();
     for (int r = 0; r < kSide; ++r) {
-        const std::uint8_t* row =
-            frame.luma + static_cast<std::ptrdiff_t>(y0 + r) * frame.luma_stride_bytes + x0;
+        const std::uint8_t* row = luma.row(y0 + r) + x0 * luma.step_bytes;
         for (int c = 0; c < kSide; ++c) {
             const int cell = r / GreyPatch::kCellPx * GreyPatch::kCells + c / GreyPatch::kCellPx;
-            sum[static_cast<std::size_t>(cell)] += row[c];
+            sum[static_cast<std::size_t>(cell)] += row[c * luma.step_bytes];
         }
     }
     GreyPatch patch;
     constexpr float kPixels = GreyPatch::kCellPx * GreyPatch::kCellPx;
     for (std::size_t i = 0; i < sum.size(); ++i)
-        patch.cell[i] = gain * static_cast<float>(sum[i]) / kPixels;
+        patch.cell[i] = gain * FullLuma(frame.range, static_cast<float>(sum[i]) / kPixels);
     return patch;
 }
 

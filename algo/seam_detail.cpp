@@ -24,14 +24,13 @@ class RowFader {
           detail_(detail),
           options_(options),
           limit_(Vector2f(static_cast<float>(options.stretch), static_cast<float>(options.tilt)) *
-                 CornerField::kSpacing_px /
+                 static_cast<float>(detail.spacing_px()) /
                  static_cast<float>(std::max(options.kappa, 1 - options.kappa))),
           shown_(shown) {}
 
     /// Columns `first` to `last` of a row, on both sides of the seam.
     void Fade(int row, double seam_px, int first, int last) const {
-        const auto nearest =
-            static_cast<int>(std::lround((seam_px + 0.5) / CornerField::kSpacing_px));
+        const auto nearest = static_cast<int>(std::lround((seam_px + 0.5) / detail_.spacing_px()));
         const int start = std::clamp(nearest, first, last);
         shown_.at(row, start) = Wanted(row, start, seam_px);
         Walk(row, start, last, 1, seam_px);
@@ -40,11 +39,11 @@ class RowFader {
 
  private:
     [[nodiscard]] Vector2f Wanted(int row, int col, double seam_px) const {
-        const double distance_px = std::abs(CornerField::Pixel(row, col).x() - seam_px);
+        const double distance_px = std::abs(detail_.Pixel(row, col).x() - seam_px);
         return static_cast<float>(ShareAt(distance_px, options_)) * detail_.at(row, col);
     }
     [[nodiscard]] Vector2f Coarse(int row, int col) const {
-        return Sample(mesh_, discrepancy_, CornerField::Pixel(row, col)).cast<float>();
+        return Sample(mesh_, discrepancy_, detail_.Pixel(row, col)).cast<float>();
     }
     /// From the corner at `start` to that at `end`, `away` at a time.
     void Walk(int row, int start, int end, int away, double seam_px) const {

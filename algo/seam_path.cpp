@@ -36,6 +36,7 @@ void SeamPath::FollowCheapest(const Range& range, std::span<const float> cost) {
     }
     has_chosen_ = true;
     Glide();
+    SkipDearWay(range, cost);
 }
 
 double SeamPath::PlaceCost(const Range& range, std::span<const float> cost, int row,
@@ -100,6 +101,26 @@ void SeamPath::Glide() {
         drawn_px_[row] += known_ ? std::clamp(missing_px, -most_px, most_px) : missing_px;
     }
     known_ = true;
+}
+
+int SeamPath::DrawnColumn(const Range& range, int row) const {
+    return std::clamp(static_cast<int>(std::lround((x_px(row) + 0.5) / spacing_px_)), range.first,
+                      range.last);
+}
+
+/// All rows at once: a path that is drawn in pieces would cut along the rows.
+void SeamPath::SkipDearWay(const Range& range, std::span<const float> cost) {
+    double more = 0;
+    for (int row = 0; row < rows_; ++row) {
+        more += PlaceCost(range, cost, row, DrawnColumn(range, row)) -
+                PlaceCost(range, cost, row, chosen_[static_cast<std::size_t>(row)]);
+    }
+    if (more > double{options_.dearest_way} * rows_) Arrive();
+}
+
+void SeamPath::Arrive() {
+    for (std::size_t row = 0; row < drawn_px_.size(); ++row)
+        drawn_px_[row] = chosen_[row] * spacing_px_ - 0.5;
 }
 
 double SeamPath::mean_px() const {

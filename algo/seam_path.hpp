@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,12 +15,16 @@ struct SeamPathOptions {
     float least_win = 0.15F;   ///< share by which a path must be cheaper to replace the chosen one
     float least_gain = 0.75F;  ///< and so much per row, grey levels
     float glide_px = 4;        ///< that the drawn path moves per frame towards the chosen one
+    /// By how much a place on its way may be dearer than the chosen path, grey levels per row; what
+    /// is dearer is skipped.
+    float dearest_way = std::numeric_limits<float>::infinity();
 };
 
 /// The line from the top to the bottom of a grid on which two pictures meet: a column per row, at
 /// most one column further in each row than in the row above. The cheapest such path by dynamic
-/// programming (as in seam carving), under the condition that what is drawn never jumps: a path is
-/// replaced when another is clearly cheaper, and the drawn one glides there.
+/// programming (as in seam carving). A path is replaced when another is clearly cheaper. The drawn
+/// one glides there as long as its way is cheap, too: a thing that moves along with the line would
+/// be cut for many frames, so it is skipped.
 class SeamPath {
  public:
     /// Columns that may be used, both ends included.
@@ -50,7 +55,10 @@ class SeamPath {
     [[nodiscard]] double KeepCost(int row, int col) const;
     [[nodiscard]] double PriceOf(const std::vector<int>& path, const Range& range,
                                  std::span<const float> cost) const;
+    [[nodiscard]] int DrawnColumn(const Range& range, int row) const;
     void Glide();
+    void SkipDearWay(const Range& range, std::span<const float> cost);
+    void Arrive();
     [[nodiscard]] std::size_t At(int row, int col) const {
         return static_cast<std::size_t>(row * cols_ + col);
     }

@@ -126,16 +126,14 @@ void SemiSurroundView::Compose(const UnitFrames& frames, cv::Mat1b& view) {
 
 void SemiSurroundView::Reduce(const CameraFrame& frame, cv::Mat1b& reduced) const {
     const int r = reduction_;
+    const SamplePlane luma = frame.LumaSamples();
     for (int y = 0; y < reduced.rows; ++y) {
-        const std::uint8_t* in =
-            frame.luma + static_cast<std::ptrdiff_t>(y) * r * frame.luma_stride_bytes;
         std::uint8_t* out = reduced[y];
         for (int x = 0; x < reduced.cols; ++x) {
             int sum = r * r / 2;
             for (int v = 0; v < r; ++v) {
-                const std::uint8_t* row =
-                    in + static_cast<std::ptrdiff_t>(v) * frame.luma_stride_bytes + x * r;
-                for (int u = 0; u < r; ++u) sum += row[u];
+                const std::uint8_t* row = luma.row(y * r + v) + x * r * luma.step_bytes;
+                for (int u = 0; u < r; ++u) sum += row[u * luma.step_bytes];
             }
             out[x] = static_cast<std::uint8_t>(sum / (r * r));
         }

@@ -63,7 +63,9 @@ bool TrailerPlacement::Correct(const PerOverlap<InterFeatures>& inter_features) 
 
 bool TrailerPlacement::Acquire(const PerOverlap<InterFeatures>& inter_features) {
     const auto fit = Fit(inter_features, true);
-    if (!fit || fit->inliers < options_.acquire_inliers) return false;
+    const double fewest =
+        std::max<double>(options_.acquire_inliers, options_.acquire_share * pairs_.count());
+    if (!fit || fit->inliers < fewest) return false;
     pose_ = fit->model;
     acquired_ = true;
     frames_since_acquired_ = 0;

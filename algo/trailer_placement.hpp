@@ -19,7 +19,8 @@ struct TrailerPlacementOptions {
     double gain = 0.7;  ///< share of the newest measurement; more right after acquiring
     int min_inliers = 12;
     int acquire_inliers = 16;
-    int coast_frames = 60;  ///< without matches before the overlap is searched from nothing
+    double acquire_share = 0.25;  ///< of the pairs that agree
+    int coast_frames = 60;        ///< without matches before the overlap is searched from nothing
 };
 
 /// Where the trailer's view lies on the tractor's (docs/algorithm.md, section 7): the pose of rays,

@@ -6,12 +6,14 @@
 namespace hitchview::algo {
 namespace {
 
-double AnalysisScale(const Projection& view) {
-    if (view.IsRing()) return std::min(1.0, 1024.0 / view.width_px);
-    return view.width_px > 960 ? 0.5 : 1.0;
-}
-
 constexpr double kDegree = std::numbers::pi / 180;
+
+/// A narrow overlap needs pixels: a patch that is described is 36 px wide.
+double AnalysisScale(const Projection& view, double overlap_rad) {
+    if (!view.IsRing()) return view.width_px > 960 ? 0.5 : 1.0;
+    const double wanted_px = overlap_rad < 20 * kDegree ? 2048 : 1024;
+    return std::min(1.0, wanted_px / view.width_px);
+}
 
 /// Nothing is uncovered by a ring's heading or by a free border: the bound is how far the picture
 /// may lag a bend or leave its place. What pulls back grows long before it.
@@ -47,9 +49,9 @@ void BoundByMargin(const Projection& view, double cropping, PathSmootherOptions&
 
 }  // namespace
 
-UnitAnalysisOptions AnalysisOptions(const Projection& view) {
+UnitAnalysisOptions AnalysisOptions(const Projection& view, double overlap_rad) {
     UnitAnalysisOptions options;
-    options.scale = AnalysisScale(view);
+    options.scale = AnalysisScale(view, overlap_rad);
     options.field.robust.max_sigma_px = 1.0 / options.scale;
     options.field.max_residual_px = 3.0 / options.scale;
     options.field.propagation = {.radius_px = {0.16 * view.width_px, 0.25 * view.height_px},
@@ -95,6 +97,7 @@ SeamOptions SeamOptionsOf(const Projection& canvas) {
         options.path.least_win = 0.05F;
         options.path.least_gain = 0.3F;
         options.path.glide_px = 16;
+        options.path.dearest_way = 30;
     }
     return options;
 }

@@ -35,7 +35,8 @@ double MaxParallax_px(const Projection& canvas);
 double MaxMeshParallax_px(const Projection& canvas);
 
 /// The stages' options for pictures of this kind and size: one place for what was tuned.
-UnitAnalysisOptions AnalysisOptions(const Projection& view);
+/// `overlap_rad`: ring only, how much of the horizon both units see where that is least.
+UnitAnalysisOptions AnalysisOptions(const Projection& view, double overlap_rad);
 StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double kappa);
 SeamOptions SeamOptionsOf(const Projection& canvas);
 /// Of single frames of a recording.

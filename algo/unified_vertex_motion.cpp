@@ -44,7 +44,7 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
                 std::make_unique<DetailField>(canvas, DetailFieldOptions{.kappa = options.kappa});
             TakeMemoryForDetail();
             for (const Unit unit : kUnits)
-                on_canvas_[unit] = std::make_unique<ViewOnCanvas>(view(unit), canvas);
+                on_canvas_[unit] = std::make_unique<PictureMap>(view(unit), canvas);
         }
         hitch_smoother_ = std::make_unique<PathSmoother>(HitchSmootherOptions(tractor_view_));
     }
@@ -256,10 +256,8 @@ void UnifiedVertexMotion::TakeMemoryForDetail() {
 }
 
 void UnifiedVertexMotion::UpdateDetail(const RigParallax& parallax, TaskRunner& runner) {
-    runner.Run(units(), [&](int i) {
-        const Unit unit = kUnits[static_cast<std::size_t>(i)];
-        on_canvas_[unit]->Update(composition_.M_canvas_view[unit]);
-    });
+    for (const Unit unit : kUnits)
+        on_canvas_[unit]->Update(composition_.M_canvas_view[unit], runner);
     runner.Run(static_cast<int>(kOverlaps.size()), [&](int i) {
         const Overlap overlap = kOverlaps[static_cast<std::size_t>(i)];
         UpdateDetail(parallax[overlap], overlap);

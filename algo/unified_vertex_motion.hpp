@@ -11,7 +11,7 @@
 #include "algo/rig_motion.hpp"
 #include "algo/stitching_motion_field.hpp"
 #include "algo/vertex_motion.hpp"
-#include "algo/view_on_canvas.hpp"
+#include "algo/picture_map.hpp"
 
 namespace hitchview::algo {
 
@@ -75,7 +75,7 @@ class UnifiedVertexMotion final : public VertexMotion {
     double max_mesh_parallax_px_;
     StitchingMotionField stitching_;
     std::unique_ptr<DetailField> detail_;               // ring with a trailer
-    PerUnit<std::unique_ptr<ViewOnCanvas>> on_canvas_;  // likewise
+    PerUnit<std::unique_ptr<PictureMap>> on_canvas_;  // likewise
     PerUnit<std::unique_ptr<UnitSmoother>> smoother_;
     std::unique_ptr<PathSmoother> hitch_smoother_;
 

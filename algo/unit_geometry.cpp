@@ -12,13 +12,12 @@ using Eigen::Vector3d;
 /// Cameras are blended where their margins differ by less than this share of the picture's width.
 constexpr double kBlendWidth = 0.035;
 
-/// Distance to the nearer side edge as a share of the width; negative outside the picture.
-double SideMargin(const CameraModel& model, const Vector2d& pixel) {
-    if (pixel.y() < 0 || pixel.y() > model.height_px - 1) return -1;
-    return std::min(pixel.x(), model.width_px - 1 - pixel.x()) / model.width_px;
-}
-
 }  // namespace
+
+double SideMargin(int width_px, int height_px, const Vector2d& pixel) {
+    if (pixel.y() < 0 || pixel.y() > height_px - 1) return -1;
+    return std::min(pixel.x(), width_px - 1 - pixel.x()) / width_px;
+}
 
 Vector3d AlignmentSurface::Hit(const Vector3d& ray) const {
     const Vector3d level = ray / ray.head<2>().norm();
@@ -96,15 +95,20 @@ void UnitGeometry::See(const Vector3d& ray, const CameraMask& present, Sights& s
         return;
     }
     const Vector3d p_unit_m = surface_.Hit(ray);
-    double best = 0;
     for (int i = 0; i < camera_count_; ++i) {
-        CameraSight sight{i, Vector2d::Zero(), 0};
-        if (!ProjectPoint(mounted(i), p_unit_m, sight.pixel)) continue;
-        const bool shows = present[static_cast<std::size_t>(i)];
-        sight.weight = shows ? SideMargin(mounted(i).model, sight.pixel) : -1;
-        best = std::max(best, sight.weight);
+        CameraSight sight{i, Vector2d::Zero(), -1};
+        const MountedCamera& camera = mounted(i);
+        if (!ProjectPoint(camera, p_unit_m, sight.pixel)) continue;
+        if (present[static_cast<std::size_t>(i)])
+            sight.weight = SideMargin(camera.model.width_px, camera.model.height_px, sight.pixel);
         sights.push_back(sight);
     }
+    ShareByMargins(sights);
+}
+
+void UnitGeometry::ShareByMargins(Sights& sights) {
+    double best = 0;
+    for (const CameraSight& sight : sights) best = std::max(best, sight.weight);
     double sum = 0;
     for (CameraSight& sight : sights) {
         sight.weight = sight.weight < 0 ? 0 : std::max(0.0, sight.weight - best + kBlendWidth);

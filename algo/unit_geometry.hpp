@@ -38,6 +38,10 @@ struct CameraSight {
     double weight;          ///< share in the view, 0..1; the shares of a ray add up to 1
 };
 
+/// Distance of a pixel to the nearer side edge of a picture, as a share of its width; less than 0
+/// outside.
+double SideMargin(int width_px, int height_px, const Eigen::Vector2d& pixel);
+
 /// Where a camera stands and in which direction it sees something; in the frame of its unit.
 struct SightLine {
     Eigen::Vector3d origin_m;   ///< the camera's centre of projection
@@ -68,6 +72,8 @@ class UnitGeometry {
     }
     /// The same where only some cameras give a picture: the others have no share.
     void See(const Eigen::Vector3d& ray, const CameraMask& present, Sights& sights) const;
+    /// Makes shares of weights that are margins (see SideMargin).
+    static void ShareByMargins(Sights& sights);
 
     /// Pixel of `camera` for a ray of the view, also outside the picture; false if it has none.
     [[nodiscard]] bool Project(int camera, const Eigen::Vector3d& ray,

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <csignal>
 
+#include "app/bench_verb.hpp"
 #include "app/demo_verb.hpp"
 #include "app/program.hpp"
 #include "app/replay_verb.hpp"
@@ -125,6 +126,33 @@ CLI::App& AddScenarios(CLI::App& app, ScenariosOptions& options) {
     return verb;
 }
 
+CLI::App& AddBench(CLI::App& app, BenchOptions& options) {
+    CLI::App& verb = *app.add_subcommand(
+        "bench",
+        "Measure what this machine does with eight cameras in memory, beside memcpy and OpenCV.\n"
+        "Example: hitchview bench --json bench.json");
+    verb.add_option("--workers", options.workers, "threads that share the work of a frame")
+        ->check(CLI::Range(1, kMaxWorkers))
+        ->capture_default_str();
+    verb.add_option("--canvas-width", options.canvas_width_px, "width of the panorama")
+        ->check(CLI::IsMember({1024, 2048, 4096}))
+        ->capture_default_str();
+    verb.add_option("--camera-width", options.camera_width_px, "width of the cameras, 16:9")
+        ->check(CLI::IsMember({320, 640, 960, 1280, 1920}))
+        ->capture_default_str();
+    verb.add_option("--frames", options.frames, "frame sets of each run")
+        ->check(CLI::Range(10, 100000))
+        ->capture_default_str();
+    verb.add_option("--rounds", options.rounds, "runs of which the median counts")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    verb.add_flag("--quick", options.quick,
+                  "one round, and no table over cameras, canvas widths and workers");
+    verb.add_option("--cache", options.cache, "folder where rendered frames are kept");
+    verb.add_option("--json", options.json, "file for all figures");
+    return verb;
+}
+
 /// Hands the arguments behind a verb to the program that does it.
 int Forward(const char* program, int argc, char** argv) {
     return RunProgram(SiblingProgram(program), std::vector<std::string>(argv + 2, argv + argc));
@@ -151,6 +179,8 @@ int main(int argc, char** argv) {
     AddRun(app, run);
     ScenariosOptions scenarios;
     const CLI::App& scenarios_verb = AddScenarios(app, scenarios);
+    BenchOptions bench;
+    const CLI::App& bench_verb = AddBench(app, bench);
     app.add_subcommand("view", "Show the published panorama: hitchview view --help");
     app.add_subcommand("eval", "Measure recordings of views and panoramas: hitchview eval --help");
 
@@ -162,5 +192,6 @@ int main(int argc, char** argv) {
     if (demo_verb.parsed()) return DemoVerb(demo, stop);
     if (replay_verb.parsed()) return ReplayVerb(replay, stop);
     if (scenarios_verb.parsed()) return ScenariosVerb(scenarios, stop);
+    if (bench_verb.parsed()) return BenchVerb(bench, stop);
     return ReplayVerb(run, stop);
 }

@@ -8,16 +8,34 @@ namespace {
 /// Gains follow slowly, so the overlaps need not be looked at in every frame.
 constexpr std::uint64_t kGainsEvery = 4;
 
+algo::PixelLayout LayoutOf(hal::PixelFormat format) {
+    switch (format) {
+        case hal::PixelFormat::kUyvy:
+            return algo::PixelLayout::kUyvy;
+        case hal::PixelFormat::kYuyv:
+            return algo::PixelLayout::kYuyv;
+        case hal::PixelFormat::kGrey:
+            return algo::PixelLayout::kGrey;
+        default:
+            HV_EXPECT(format == hal::PixelFormat::kNv12);  // no camera delivers planar pictures
+            return algo::PixelLayout::kNv12;
+    }
+}
+
 algo::CameraFrame Borrow(const hal::FrameLease& lease) {
     if (!lease) return {};
     const hal::FrameView& view = lease.view();
-    HV_EXPECT(view.format.pixel_format == hal::PixelFormat::kNv12);
+    const algo::PixelLayout layout = LayoutOf(view.format.pixel_format);
+    const hal::Plane& chroma = view.planes[layout == algo::PixelLayout::kNv12 ? 1 : 0];
     return {.width_px = view.format.width_px,
             .height_px = view.format.height_px,
             .luma = view.planes[0].data,
             .luma_stride_bytes = view.planes[0].stride_bytes,
-            .chroma = view.planes[1].data,
-            .chroma_stride_bytes = view.planes[1].stride_bytes};
+            .chroma = chroma.data,
+            .chroma_stride_bytes = chroma.stride_bytes,
+            .layout = layout,
+            .range = view.format.range == hal::Range::kFull ? algo::SampleRange::kFull
+                                                            : algo::SampleRange::kLimited};
 }
 
 hal::FrameFormat CanvasFormat(const algo::Projection& canvas) {

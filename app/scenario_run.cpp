@@ -8,7 +8,7 @@
 #include "app/scenario_frames.hpp"
 #include "app/scenario_meter.hpp"
 #include "app/scenario_pictures.hpp"
-#include "app/truth_calibration.hpp"
+#include "app/simulated_geometry.hpp"
 #include "app/worker_pool.hpp"
 
 namespace hitchview::app {
@@ -16,25 +16,6 @@ namespace {
 
 using drivers::SimulatedRig;
 using nlohmann::json;
-
-RigConfig ConfigOf(const SimulatedRig& rig, int canvas_width_px) {
-    RigConfig config;
-    config.file = "simulated rig";
-    config.canvas.projection = CanvasConfig::Projection::kCylinder;
-    config.canvas.size_px = {canvas_width_px, canvas_width_px * 360 / 2048 / 2 * 2};
-    for (int i = 0; i < SimulatedRig::kCameras; ++i) {
-        config.units[rig.camera(i).unit].cameras.push_back(
-            {.name = std::string(rig.camera(i).name), .source = CameraConfig::Source::kSimulated});
-    }
-    return config;
-}
-
-hal::Checked<RigGeometry> GeometryOf(const SimulatedRig& rig, int canvas_width_px) {
-    CameraFormats formats;
-    for (int i = 0; i < SimulatedRig::kCameras; ++i)
-        formats[rig.camera(i).unit].push_back(rig.format());
-    return MakeRigGeometry(ConfigOf(rig, canvas_width_px), CalibrationOf(rig), formats);
-}
 
 /// Frame sets that the live mode holds back.
 int HeldSets(const ScenarioRunOptions& options) {

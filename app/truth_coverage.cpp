@@ -62,7 +62,7 @@ bool TruthCoverage::Overlaps(int from_col, int to_col, std::uint32_t missing) co
             both += tractor && trailer ? 1 : 0;
             any += tractor || trailer ? 1 : 0;
         }
-        if (any > 0 && both >= kBothShare * any) width_px += algo::ComposedMap::kBlock;
+        if (any > 0 && both >= kBothShare * any) width_px += map_.block_px();
     }
     return width_px >= kNarrowest_px;
 }

@@ -132,8 +132,7 @@ void TruthOverlap::ObserveCorner(const ShownPanorama& shown, const algo::Composi
     const Sighting other =
         sight_.Find(Unit::kTrailer, frame, point->p_world_m, TruthSight::Occlusion::kTested, used);
     if (other.camera < 0) return;
-    const Vector2d canvas_px{col * double{ComposedMap::kBlock} - 0.5,
-                             row * double{ComposedMap::kBlock} - 0.5};
+    const Vector2d canvas_px = map.block_px() * Vector2d(col, row) - Vector2d::Constant(0.5);
     const Overlap overlap = col < map.block_cols() / 2 ? Overlap::kLeft : Overlap::kRight;
     samples_.push_back({.overlap = overlap,
                         .frame = frame,

@@ -105,7 +105,7 @@ bool IsRendered(const ComposedMap& map, const RigGeometry& geometry, int row, in
 }
 
 WarpGrid WarpOf(const ComposedMap& map, const RigGeometry& geometry, Unit unit, int step) {
-    const double spacing = double{ComposedMap::kBlock} * step;
+    const double spacing = static_cast<double>(map.block_px() * step);
     WarpGrid warp(map.block_rows() / step + 1, map.block_cols() / step + 1, spacing);
     for (int row = 0; row < warp.rows; ++row) {
         for (int col = 0; col < warp.cols; ++col) {

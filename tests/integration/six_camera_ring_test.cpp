@@ -73,12 +73,13 @@ Vector2d At(const cv::KeyPoint& point) {
     return {point.pt.x, point.pt.y};
 }
 
-/// Angle by which two sight lines miss each other, whatever the distance of what they meet in.
+/// Angle by which the second sight line passes over the first, whatever the distance of what they
+/// meet in.
 double Skew_rad(const Mounted& a, const Vector3d& ray_a, const Mounted& b, const Vector3d& ray_b) {
     const Vector3d baseline =
         a.geometry.T_unit_camera.translation() - b.geometry.T_unit_camera.translation();
     const Vector3d normal = baseline.cross(ray_a).normalized();
-    return std::abs(std::asin(normal.dot(ray_b)));
+    return std::asin(normal.dot(ray_b));
 }
 
 class SixCameraRingTest : public testing::Test {
@@ -137,19 +138,40 @@ class SixCameraRingTest : public testing::Test {
     }
 
     /// Features of the pictures themselves, held to the geometry of the pair and to nothing
-    /// else: mutual nearest neighbours whose sight lines meet far enough away.
+    /// else: mutual nearest neighbours whose sight lines meet far enough away. They miss each other
+    /// by the same angle all over a joint, which is 0 only if the cameras stand as calibrated.
     std::vector<Match> Matches(std::size_t first, std::size_t second) {
         const Features a = Described(first, second);
         const Features b = Described(second, first);
         std::vector<cv::DMatch> nearest;
         cv::BFMatcher(cv::NORM_L2, true).match(a.descriptors, b.descriptors, nearest);
         std::vector<Match> matches;
+        std::vector<double> skews_rad;
         for (const cv::DMatch& m : nearest) {
             const Match match{At(a.points[static_cast<std::size_t>(m.queryIdx)]),
                               At(b.points[static_cast<std::size_t>(m.trainIdx)])};
-            if (IsTrue(first, second, match)) matches.push_back(match);
+            const auto skew_rad = SkewIfTrue(first, second, match);
+            if (!skew_rad) continue;
+            matches.push_back(match);
+            skews_rad.push_back(*skew_rad);
         }
-        return matches;
+        return Agreeing(matches, skews_rad);
+    }
+
+    /// Those with the most common skew.
+    static std::vector<Match> Agreeing(const std::vector<Match>& matches,
+                                       const std::vector<double>& skews_rad) {
+        constexpr double kSpread_rad = 0.3 * kDegree;
+        std::vector<Match> best;
+        for (const double centre_rad : skews_rad) {
+            std::vector<Match> agreeing;
+            for (std::size_t i = 0; i < matches.size(); ++i) {
+                if (std::abs(skews_rad[i] - centre_rad) < kSpread_rad)
+                    agreeing.push_back(matches[i]);
+            }
+            if (agreeing.size() > best.size()) best = std::move(agreeing);
+        }
+        return best;
     }
 
     [[nodiscard]] Features Described(std::size_t camera, std::size_t neighbour) const {
@@ -157,13 +179,16 @@ class SixCameraRingTest : public testing::Test {
                         SharedWith(cameras_[neighbour], cameras_[camera]));
     }
 
-    [[nodiscard]] bool IsTrue(std::size_t first, std::size_t second, const Match& match) const {
+    [[nodiscard]] std::optional<double> SkewIfTrue(std::size_t first, std::size_t second,
+                                                   const Match& match) const {
         const Mounted& a = cameras_[first];
         const Mounted& b = cameras_[second];
         const Vector3d ray_a = RayOf(a, match.first_px);
         const Vector3d ray_b = RayOf(b, match.second_px);
         const double apart_rad = std::acos(std::clamp(ray_a.dot(ray_b), -1.0, 1.0));
-        return Skew_rad(a, ray_a, b, ray_b) < 0.6 * kDegree && apart_rad < 6 * kDegree;
+        const double skew_rad = Skew_rad(a, ray_a, b, ray_b);
+        if (std::abs(skew_rad) > 1.5 * kDegree || apart_rad > 6 * kDegree) return std::nullopt;
+        return skew_rad;
     }
 
     [[nodiscard]] Vector2d OnCanvas(std::size_t camera, const Vector2d& pixel) const {
@@ -178,16 +203,27 @@ class SixCameraRingTest : public testing::Test {
     std::optional<RigGeometry> geometry_;
 };
 
+TEST_F(SixCameraRingTest, BothNarrowOverlapsLock) {
+    for (const algo::Overlap overlap : algo::kOverlaps) {
+        EXPECT_EQ(kept_.back().composition.seams[overlap], algo::SeamState::kLocked)
+            << ToString(overlap);
+    }
+}
+
 TEST_F(SixCameraRingTest, ItsJointsCloseAsFarAsNearThingsAllow) {
-    // 11.4 px are a degree; cameras half a metre apart see a thing 5 m away 6 degrees apart.
+    // 11.4 px are a degree; cameras half a metre apart see a thing 5 m away 6 degrees apart. Where
+    // units meet, the pictures say what is where; calibration alone leaves 11 and 6 px.
     constexpr double kParallax_px = 20;
+    constexpr double kMatched_px = 6.5;
     int measured = 0;
     for (std::size_t i = 0; i < SixCameraRing::kCameras.size(); ++i) {
         const std::size_t next = (i + 1) % SixCameraRing::kCameras.size();
         const auto maybe_px = Misalignment_px(i, next);
         if (!maybe_px) continue;
         ++measured;
-        EXPECT_LE(*maybe_px, kParallax_px);
+        const bool units_meet =
+            SixCameraRing::kCameras[i].unit != SixCameraRing::kCameras[next].unit;
+        EXPECT_LE(*maybe_px, units_meet ? kMatched_px : kParallax_px);
     }
     EXPECT_GE(measured, 5);
 }

@@ -14,7 +14,7 @@ namespace hitchview::tests {
 
 /// One instant of six cameras round a car, told as a rig: three look forward (the tractor) and
 /// three back (the trailer). Neighbours overlap by 6 to 12 degrees. Within a unit the calibration
-/// says how cameras join, and so it does between the units until image motion tells more.
+/// says how cameras join, and so it does between the units until the pictures tell more.
 class SixCameraRing {
  public:
     static constexpr int kFrames = 12;
@@ -50,7 +50,7 @@ class SixCameraRing {
     [[nodiscard]] std::string Rig() const {
         std::string text =
             "schema: 1\ncalibration: ring.calib.yaml\ncanvas: {projection: cylinder, size_px: "
-            "[4096, 480], horizon: 0.5, radius_m: 30, viewpoint_m: 1.1, ground_m: -0.4}\nunits:\n";
+            "[4096, 480], horizon: 0.5, radius_m: 50, viewpoint_m: 1.1, ground_m: -0.4}\nunits:\n";
         for (const algo::Unit unit : algo::kUnits) {
             text += "  " + std::string(ToString(unit)) + ":\n    cameras:\n";
             for (const Camera& camera : kCameras) {

@@ -9,9 +9,9 @@ using Eigen::Vector2d;
 
 TEST(CornerGridTest, ItsCornersReachOverAllPixelsOfTheCanvas) {
     for (const int length_px : {8, 9, 100, 104, 2048}) {
-        const int corners = CornerScalars::CornersOver(length_px);
-        EXPECT_GE(CornerScalars::Pixel(0, corners - 1).x(), length_px - 0.5) << length_px;
-        EXPECT_LT(CornerScalars::Pixel(0, corners - 2).x(), length_px - 0.5) << length_px;
+        const CornerScalars grid(Projection::Plane(length_px, 8), 0);
+        EXPECT_GE(grid.Pixel(0, grid.cols() - 1).x(), length_px - 0.5) << length_px;
+        EXPECT_LT(grid.Pixel(0, grid.cols() - 2).x(), length_px - 0.5) << length_px;
     }
     const CornerField field(Projection::Plane(100, 40), {1, 2});
     EXPECT_EQ(field.rows(), 6);
@@ -24,7 +24,7 @@ TEST(CornerGridTest, AFieldThatIsLinearIsReadExactlyEverywhere) {
     const auto value = [](const Vector2d& p) { return 3 + 0.5 * p.x() - 0.25 * p.y(); };
     for (int row = 0; row < grid.rows(); ++row) {
         for (int col = 0; col < grid.cols(); ++col)
-            grid.at(row, col) = static_cast<float>(value(CornerScalars::Pixel(row, col)));
+            grid.at(row, col) = static_cast<float>(value(grid.Pixel(row, col)));
     }
     for (double y = -0.5; y <= 47.5; y += 1.7) {
         for (double x = -0.5; x <= 95.5; x += 2.3)

@@ -32,7 +32,7 @@ class DetailFieldTest : public testing::Test {
     /// With the mesh's part.
     [[nodiscard]] Vector2d At(int row, int col) const {
         return field_.detail().at(row, col).cast<double>() +
-               Sample(Mesh(canvas_), mesh_, CornerField::Pixel(row, col));
+               Sample(Mesh(canvas_), mesh_, field_.detail().Pixel(row, col));
     }
     [[nodiscard]] float Doubt(int row, int col) const { return field_.doubt_px().at(row, col); }
 

@@ -49,7 +49,7 @@ class SeamDetailTest : public testing::Test {
     }
     [[nodiscard]] Vector2f Whole(int row, int col) const {
         return shown_.at(row, col) +
-               Sample(Mesh(canvas_), mesh_, CornerField::Pixel(row, col)).cast<float>();
+               Sample(Mesh(canvas_), mesh_, detail_.Pixel(row, col)).cast<float>();
     }
     /// Visits neighbours in a row on the same side of the ring's middle.
     template <typename Visitor>
@@ -67,7 +67,7 @@ class SeamDetailTest : public testing::Test {
     const Projection canvas_ = Projection::Cylinder(1024, 176, 0.5);
     CornerField detail_{canvas_, Vector2f::Zero()};
     CornerField shown_{canvas_, Vector2f(99, 99)};
-    UnitSeams seams_{canvas_, detail_.rows(), detail_.cols(), CornerField::kSpacing_px, {}};
+    UnitSeams seams_{canvas_, detail_.rows(), detail_.cols(), 8, {}};
     VertexField mesh_ = VertexField::Zero();
 };
 

@@ -126,6 +126,54 @@ TEST(SeamPathTest, WhatIsDrawnGlidesAtABoundedSpeedAndArrives) {
     EXPECT_NEAR(path.mean_px(), 13.5 * kSpacing - 0.5, 1e-9);
 }
 
+/// A thing that the units show in different places, as wide as four columns, in a cheap plain.
+Cost ThingAt(int col) {
+    Cost cost = Flat(1);
+    for (int row = 4; row < 10; ++row) {
+        for (int c = col; c < col + 4; ++c) At(cost, row, c) = 400;
+    }
+    return cost;
+}
+
+/// Most rows that cut the thing at any time as it passes the path, a column per frame.
+int MostRowsCut(SeamPath& path) {
+    int most = 0;
+    for (int first = kRange.first - 4; first <= kRange.last - 4; ++first) {
+        Cost cost = ThingAt(std::max(0, first));
+        path.FollowCheapest(kRange, cost);
+        int cut = 0;
+        for (int row = 0; row < kRows; ++row) {
+            const auto col = static_cast<int>(std::lround(ColumnOf(path, row)));
+            cut += At(cost, row, col) > 1 ? 1 : 0;
+        }
+        most = std::max(most, cut);
+    }
+    return most;
+}
+
+TEST(SeamPathTest, AThingThatMovesAlongWithTheGlidingPathIsSkippedAndNotCut) {
+    SeamPathOptions options{.glide_px = static_cast<float>(kSpacing)};
+    SeamPath gliding(kRows, kCols, kSpacing, options);
+    EXPECT_GT(MostRowsCut(gliding), 0);
+    options.dearest_way = 30;
+    SeamPath skipping(kRows, kCols, kSpacing, options);
+    EXPECT_EQ(MostRowsCut(skipping), 0);
+}
+
+TEST(SeamPathTest, WhereTheWayIsCheapThePathGlidesAlthoughItMaySkip) {
+    const SeamPathOptions options{.glide_px = 3, .dearest_way = 30};
+    SeamPath path(kRows, kCols, kSpacing, options);
+    Cost cost = Flat(5);
+    for (int row = 0; row < kRows; ++row) At(cost, row, 5) = 0;
+    path.FollowCheapest(kRange, cost);
+    ASSERT_EQ(ColumnOf(path, 0), 5);
+    cost = Flat(5);
+    for (int row = 0; row < kRows; ++row) At(cost, row, 13) = 0;
+    path.FollowCheapest(kRange, cost);
+    for (int row = 0; row < kRows; ++row)
+        EXPECT_NEAR(path.x_px(row), 5 * kSpacing - 0.5 + options.glide_px, 1e-9);
+}
+
 TEST(SeamPathTest, ARangeThatMovesTakesTheChosenPathWithIt) {
     SeamPath path(kRows, kCols, kSpacing, {});
     path.FollowCheapest({2, 8}, Valley([](int) { return 6; }));

@@ -72,6 +72,12 @@ TEST_P(TrailerPlacementTest, IsAcquiredFromPairsOfWhichHalfAreWrong) {
     }
 }
 
+TEST_P(TrailerPlacementTest, ManyPairsOfWhichFewAgreeAcquireNothing) {
+    placement_->Start(Matrix3d::Identity());
+    EXPECT_FALSE(placement_->Acquire(Pairs(truth_, 0.85, 0.5)));
+    EXPECT_FALSE(placement_->acquired());
+}
+
 TEST_P(TrailerPlacementTest, TooFewPairsAcquireNothingAndChangeNothing) {
     placement_->Start(truth_);
     PerOverlap<InterFeatures> few = Pairs(Pose(-50, 0, 0));

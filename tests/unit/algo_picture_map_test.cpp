@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "algo/view_on_canvas.hpp"
+#include "algo/picture_map.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -17,8 +17,9 @@ const Projection kCanvas = Projection::Cylinder(1920, 512, 0.4);
 
 /// Farthest that the grid is off anywhere in the view.
 double WorstMiss_px(const Matrix3d& M_canvas_view) {
-    ViewOnCanvas places(kView, kCanvas);
-    places.Update(M_canvas_view);
+    PictureMap places(kView, kCanvas);
+    SerialRunner runner;
+    places.Update(M_canvas_view, runner);
     double worst_px = 0;
     for (double y = 0; y < kView.height_px; y += 3.7) {
         for (double x = 0; x < kView.width_px; x += 5.3) {
@@ -29,7 +30,7 @@ double WorstMiss_px(const Matrix3d& M_canvas_view) {
     return worst_px;
 }
 
-TEST(ViewOnCanvasTest, TheGridIsRightEverywhereAlsoWhereTheViewCrossesTheCanvasEdge) {
+TEST(PictureMapTest, TheGridIsRightEverywhereAlsoWhereTheViewCrossesTheCanvasEdge) {
     for (const double heading_rad : {0.0, 1.0, 3.1}) {
         const Matrix3d M = (AngleAxisd(heading_rad, Vector3d::UnitZ()) *
                             AngleAxisd(0.08, Vector3d(1, 1, 0).normalized()))
@@ -38,10 +39,11 @@ TEST(ViewOnCanvasTest, TheGridIsRightEverywhereAlsoWhereTheViewCrossesTheCanvasE
     }
 }
 
-TEST(ViewOnCanvasTest, AnUpdateForgetsTheOneBefore) {
-    ViewOnCanvas places(kView, kCanvas);
-    places.Update(AngleAxisd(0.5, Vector3d::UnitZ()).toRotationMatrix());
-    places.Update(Matrix3d::Identity());
+TEST(PictureMapTest, AnUpdateForgetsTheOneBefore) {
+    PictureMap places(kView, kCanvas);
+    SerialRunner runner;
+    places.Update(AngleAxisd(0.5, Vector3d::UnitZ()).toRotationMatrix(), runner);
+    places.Update(Matrix3d::Identity(), runner);
     const Vector2d pixel{700.25, 200.5};
     EXPECT_LT((places.At(pixel) - kCanvas.Pixel(kView.Ray(pixel))).norm(), 0.01);
 }

@@ -1,0 +1,153 @@
+#include "app/bench_run.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <vector>
+
+#include "algo/unified_vertex_motion.hpp"
+#include "app/panorama_publisher.hpp"
+#include "app/pipeline.hpp"
+#include "app/worker_pool.hpp"
+#include "drivers/steady_clock.hpp"
+
+namespace hitchview::app {
+namespace {
+
+constexpr int kWarmUpFrames = 20;
+/// Of a compressed panorama, so that no picture is compressed twice.
+constexpr int kMaxJpegBytes = 4'000'000;
+
+double CpuMs(clockid_t clock) {
+    timespec now{};
+    clock_gettime(clock, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+double Ms(hal::Instant duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+double Quantile(std::vector<double> values, double share) {
+    if (values.empty()) return 0;
+    const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at),
+                     values.end());
+    return values[at];
+}
+
+/// Takes panoramas as display units would, and notes when. Read it when the publisher has finished.
+class Display final : public hal::Publisher {
+ public:
+    explicit Display(const hal::Clock& clock) : clock_(clock) {}
+
+    std::vector<double> latencies_ms;
+    std::vector<double> intervals_ms;
+    std::vector<double> bytes;
+    double cpu_ms = 0;  ///< of the publishing thread
+
+ private:
+    hal::Result<hal::Done> DoPublish(const hal::PanoramaImage& image) override {
+        const hal::Instant now = clock_.Now();
+        cpu_ms = CpuMs(CLOCK_THREAD_CPUTIME_ID);
+        latencies_ms.push_back(Ms(now - image.captured_until));
+        bytes.push_back(static_cast<double>(image.jpeg.size()));
+        if (newest_.count() != 0) intervals_ms.push_back(Ms(now - newest_));
+        newest_ = now;
+        return hal::Done{};
+    }
+    hal::Result<hal::Done> DoPublish(const hal::PanoramaStatus& /*status*/) override {
+        return hal::Done{};
+    }
+    hal::Result<hal::Done> DoPublish(const hal::HitchAngle& /*angle*/) override {
+        return hal::Done{};
+    }
+
+    const hal::Clock& clock_;
+    hal::Instant newest_{};
+};
+
+class BenchDrive {
+ public:
+    BenchDrive(const RigGeometry& geometry, BenchFrames& frames, const BenchRunOptions& options)
+        : frames_(frames),
+          options_(options),
+          workers_(options.workers),
+          motion_(geometry.canvas, geometry.units, {}),
+          pipeline_(geometry, motion_, workers_) {
+        pipeline_.Prime(frames_.Set(0, clock_.Now()));
+        pipeline_.Start();
+        for (int i = 0; i < kWarmUpFrames; ++i) pipeline_.Process(Next());
+    }
+    ~BenchDrive() { pipeline_.Start(); }  // gives the last leases back
+    BenchDrive(const BenchDrive&) = delete;
+    BenchDrive& operator=(const BenchDrive&) = delete;
+
+    void RunUnpaced(BenchFigures& figures) {
+        Display display(clock_);
+        const double start_ms = CpuMs(CLOCK_PROCESS_CPUTIME_ID);
+        {
+            PanoramaPublisher publisher = OpenPublisher(display, false);
+            for (int i = 0; i < options_.frames; ++i) Publish(publisher, Next());
+            publisher.Finish();
+        }
+        const double all_ms = CpuMs(CLOCK_PROCESS_CPUTIME_ID) - start_ms;
+        figures.jpeg_ms = display.cpu_ms / options_.frames;
+        figures.core_ms = all_ms / options_.frames - figures.jpeg_ms;
+        figures.jpeg_bytes = Quantile(display.bytes, 0.5);
+        figures.interval_ms = Quantile(display.intervals_ms, 0.5);
+        figures.times = pipeline_.times();
+    }
+
+    void RunPaced(hal::Instant period, BenchFigures& figures) {
+        Display display(clock_);
+        PanoramaPublisher publisher = OpenPublisher(display, true);
+        const hal::Instant start = clock_.Now();
+        for (int i = 0; i < options_.frames; ++i) {
+            const hal::Instant due = start + period * i;
+            if (clock_.Now() > due + period) continue;
+            clock_.SleepUntil(due);
+            Publish(publisher, frames_.Set(next_++, due));
+        }
+        publisher.Finish();
+        figures.latency_p50_ms = Quantile(display.latencies_ms, 0.5);
+        figures.latency_p99_ms = Quantile(display.latencies_ms, 0.99);
+        figures.dropped = options_.frames - static_cast<int>(display.latencies_ms.size());
+    }
+
+ private:
+    FrameSet Next() { return frames_.Set(next_++, clock_.Now()); }
+
+    PanoramaPublisher OpenPublisher(hal::Publisher& display, bool drop_when_late) {
+        return PanoramaPublisher(display, clock_, nullptr, pipeline_.format(),
+                                 {.jpeg = {.budget_bytes = kMaxJpegBytes},
+                                  .calibration_id = {},
+                                  .drop_when_late = drop_when_late});
+    }
+
+    void Publish(PanoramaPublisher& publisher, FrameSet&& set) {
+        const ShownPanorama& shown = *pipeline_.Process(std::move(set));
+        publisher.Append(
+            {.picture = shown.picture, .captured_until = shown.captured_until, .status = {}});
+    }
+
+    BenchFrames& frames_;
+    BenchRunOptions options_;
+    drivers::SteadyClock clock_;
+    WorkerPool workers_;
+    algo::UnifiedVertexMotion motion_;
+    Pipeline pipeline_;
+    int next_ = 0;
+};
+
+}  // namespace
+
+BenchFigures RunBench(const RigGeometry& geometry, BenchFrames& frames,
+                      const BenchRunOptions& options) {
+    BenchFigures figures;
+    BenchDrive drive(geometry, frames, options);
+    drive.RunUnpaced(figures);
+    if (options.period) drive.RunPaced(*options.period, figures);
+    return figures;
+}
+
+}  // namespace hitchview::app

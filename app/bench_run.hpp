@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "app/bench_frames.hpp"
+#include "app/rig_geometry.hpp"
+#include "app/stage_times.hpp"
+
+namespace hitchview::app {
+
+/// What a run of the whole pipeline with its publisher cost.
+struct BenchFigures {
+    double core_ms = 0;      ///< CPU time of a frame set, summed over threads, without publishing
+    double jpeg_ms = 0;      ///< CPU time of compressing and publishing it
+    double jpeg_bytes = 0;   ///< median
+    double interval_ms = 0;  ///< median from one panorama to the next, as fast as it goes
+    double latency_p50_ms = 0;  ///< paced: from the frame set's moment to the compressed panorama
+    double latency_p99_ms = 0;
+    int dropped = 0;        ///< paced: panoramas never published
+    AllStageTimes times{};  ///< wall
+};
+
+struct BenchRunOptions {
+    int workers = 2;
+    int frames = 120;                      ///< of each kind of run
+    std::optional<hal::Instant> period{};  ///< also paced, at this period
+};
+
+/// Drives the pipeline of this geometry with the frames from memory, warm-up first.
+BenchFigures RunBench(const RigGeometry& geometry, BenchFrames& frames,
+                      const BenchRunOptions& options);
+
+}  // namespace hitchview::app

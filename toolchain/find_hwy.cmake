@@ -1,0 +1,5 @@
+find_path(HWY_INCLUDE_DIR hwy/highway.h REQUIRED)
+find_library(HWY_LIBRARY hwy REQUIRED)
+add_library(hwy::hwy UNKNOWN IMPORTED)
+set_target_properties(hwy::hwy PROPERTIES
+    IMPORTED_LOCATION ${HWY_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${HWY_INCLUDE_DIR})
