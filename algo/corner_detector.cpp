@@ -100,6 +100,12 @@ void ForEachMark(const std::uint8_t* marks, int count, Found&& found) {
     }
 }
 
+/// Unlike cv::Mat::setTo, which takes memory.
+template <typename T>
+void SetZero(cv::Mat_<T>& image) {
+    std::fill_n(image[0], image.total(), T{0});
+}
+
 }  // namespace
 
 CornerDetector::CornerDetector(int width_px, int height_px, const CornerDetectorOptions& options)
@@ -117,15 +123,15 @@ void CornerDetector::Detect(const cv::Mat1b& image, const cv::Mat1b& mask,
     corners.clear();
     MeasureStrength(image);
     const float best = CollectPeaks(mask);
-    blocked_.setTo(0);
+    SetZero(blocked_);
     for (const Eigen::Vector2f& point : taken) BlockAround(point);
     ServeBuckets(std::max(options_.min_strength, options_.quality * best), wanted, corners);
 }
 
 void CornerDetector::MeasureStrength(const cv::Mat1b& image) {
     constexpr int kHalf = kBox / 2;
-    products_.setTo(0);
-    column_sums_.setTo(0);
+    SetZero(products_);
+    SetZero(column_sums_);
     for (int y = 1; y + 1 < image.rows; ++y) {
         AddRow(image, y);
         if (y >= kBox) WriteStrengthRow(y - kHalf);
@@ -194,7 +200,8 @@ void CornerDetector::BlockAround(const Eigen::Vector2f& point) {
     const int y0 = static_cast<int>(std::lround(point.y())) - d;
     const cv::Rect all(0, 0, blocked_.cols, blocked_.rows);
     const cv::Rect around = cv::Rect(x0, y0, 2 * d + 1, 2 * d + 1) & all;
-    if (!around.empty()) blocked_(around).setTo(1);
+    for (int y = around.y; y < around.y + around.height; ++y)
+        std::fill_n(blocked_[y] + around.x, around.width, std::uint8_t{1});
 }
 
 void CornerDetector::ServeBuckets(float min_strength, int wanted, Corners& corners) {

@@ -37,6 +37,11 @@ class CornerGrid {
     T& at(int row, int col) { return values_[Index(row, col)]; }
     const T& at(int row, int col) const { return values_[Index(row, col)]; }
     void Fill(const T& value) { std::fill(values_.begin(), values_.end(), value); }
+    /// Without corners, like a new one; the memory stays for what is assigned later.
+    void Clear() {
+        rows_ = cols_ = 0;
+        values_.clear();
+    }
 
     [[nodiscard]] Eigen::Vector2d Pixel(int row, int col) const {
         return {1.0 * col * spacing_px_ - 0.5, 1.0 * row * spacing_px_ - 0.5};

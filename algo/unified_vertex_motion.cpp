@@ -39,6 +39,7 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
         if (canvas.IsRing()) {
             parallax_ = std::make_unique<std::array<RigParallax, kRecords>>();
             detail_ = std::make_unique<DetailField>(canvas, DetailOptions(canvas, options.kappa));
+            TakeMemoryForDetail();
             for (const Unit unit : kUnits)
                 on_canvas_[unit] = std::make_unique<PictureMap>(view(unit), canvas);
         }
@@ -243,6 +244,13 @@ void UnifiedVertexMotion::UpdateStitching(const RigMotion& record, const Matrix3
         stitching_.Update(canvas_pairs_);
     }
     stitching_.Extend();
+}
+
+void UnifiedVertexMotion::TakeMemoryForDetail() {
+    composition_.detail = detail_->detail();
+    composition_.detail.Clear();
+    composition_.doubt_px = detail_->doubt_px();
+    composition_.doubt_px.Clear();
 }
 
 void UnifiedVertexMotion::UpdateDetail(const RigParallax& parallax, TaskRunner& runner) {

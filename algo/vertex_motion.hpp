@@ -17,6 +17,9 @@ class VertexMotion {
     virtual bool Prime(const RigFrames& frames, TaskRunner& runner) = 0;
     /// One frame set in; empty while the composition of the first set is not known yet.
     virtual const Composition* Step(const RigFrames& frames, TaskRunner& runner) = 0;
+    /// Asks the next step to leave out what one frame can do without: matching between the units.
+    /// False where it does everything all the same.
+    virtual bool LightenNextStep() { return false; }
     /// After the last set: the compositions held back, one per call, then empty.
     virtual const Composition* Flush() = 0;
     /// The next step is the first one; the layout stays.

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "app/camera_ahead.hpp"
 #include "drivers/candump_can_bus.hpp"
 #include "drivers/lcm_publisher.hpp"
 #include "drivers/replay_camera.hpp"
@@ -47,6 +48,7 @@ drivers::SimulationOptions Overridden(drivers::SimulationOptions options,
                                       const SimulationConfig& config, hal::Instant period) {
     options.seed = config.seed.value_or(options.seed);
     options.frames = config.frames.value_or(options.frames);
+    options.render_threads = 1;  // each camera is rendered on a thread of its own
     options.period = period;
     if (config.camera_size_px) {
         options.width_px = config.camera_size_px->width_px;
@@ -120,12 +122,15 @@ hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit un
                    "right_front; "
                    "trailer: left, left_rear, rear, right_rear, right)";
         }
-        cameras_[unit].push_back(std::make_unique<drivers::SimulatedCamera>(
-            *simulation_, index, hal::Instant{0}, slots));
+        auto rendered =
+            std::make_unique<drivers::SimulatedCamera>(*simulation_, index, hal::Instant{0}, slots);
+        cameras_[unit].push_back(std::make_unique<CameraAhead>(std::move(rendered), camera.name));
         return hal::Done{};
     }
-    auto replay =
-        drivers::ReplayCamera::Open(camera.replay.string(), {.name = camera.name, .slots = slots});
+    // Where the rig file states the pace, the frames were captured at it.
+    const double rate_hz = config.period ? 1e9 / static_cast<double>(config.period->count()) : 0;
+    auto replay = drivers::ReplayCamera::Open(
+        camera.replay.string(), {.name = camera.name, .rate_hz = rate_hz, .slots = slots});
     if (!replay) return config.file.string() + ": camera " + camera.name + ": " + replay.error();
     if (period_.count() == 0)
         period_ = hal::Instant(static_cast<std::int64_t>(1e9 / (*replay)->rate_hz()));

@@ -117,14 +117,6 @@ void ReadCalibrationPath(YamlMap& root, const ConfigContext& context, RigConfig&
     }
 }
 
-int ReadWorkers(const YamlValue& value) {
-    int workers = RigConfig{}.workers;
-    YamlMap map = value.Map();
-    map["workers"].Read(Range<int>{1, kMaxWorkers}, workers);
-    map.Finish();
-    return workers;
-}
-
 std::optional<std::chrono::nanoseconds> ReadPeriod(const YamlValue& value) {
     if (!value.given()) return std::nullopt;
     double period_ms = 0;
@@ -143,7 +135,8 @@ RigConfig ReadRig(YamlMap& root, ConfigContext& context) {
     config.stabilization = ReadStabilization(root["stabilization"]);
     config.stitching = ReadStitching(root["stitching"]);
     config.placement = ReadPlacement(root["placement"], config);
-    config.workers = ReadWorkers(root["threads"]);
+    ReadThreads(root["threads"], config);
+    config.real_time = ReadRealTime(root["real_time"]);
     config.period = ReadPeriod(root["period_ms"]);
     config.can = ReadCan(root["can"], context);
     config.publish = ReadPublish(root["publish"]);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algo/unit.hpp"
+#include "app/thread_schedule.hpp"
 #include "calib/rig_calibration.hpp"
 #include "hal/result.hpp"
 
@@ -17,6 +18,7 @@ namespace hitchview::app {
 inline constexpr int kMaxCameras = 8;
 inline constexpr int kMaxLookaheadFrames = 10;
 inline constexpr int kMaxWorkers = 16;
+inline constexpr int kMaxCpus = 256;
 
 struct Size {
     int width_px = 0;
@@ -124,6 +126,17 @@ struct PublishConfig {
     int max_bytes = 150000;  ///< of one compressed panorama. [20000, 4000000]
 };
 
+/// What a run at the cameras' pace asks of the system.
+struct RealTimeConfig {
+    enum class LockMemory {
+        kNever,
+        kTry,       ///< goes on without it, and says so
+        kRequired,  ///< does not start without it
+    };
+
+    LockMemory lock_memory = LockMemory::kTry;
+};
+
 struct RigConfig {
     std::filesystem::path file{};  ///< where it was read from
     CanvasConfig canvas{};
@@ -133,7 +146,9 @@ struct RigConfig {
     StabilizationConfig stabilization{};
     StitchingConfig stitching{};
     std::optional<Placement> placement{};  ///< plane only; otherwise found by matching
-    int workers = 2;                       ///< threads beside the pipeline's own. [1, 16]
+    int workers = 2;  ///< threads that share a frame, the pipeline's own among them. [1, 16]
+    ThreadSchedule schedule{};  ///< of the pipeline and those
+    RealTimeConfig real_time{};
     std::optional<std::chrono::nanoseconds> period{};  ///< [1, 1000] ms; otherwise the recording's
     std::optional<CanConfig> can{};
     PublishConfig publish{};

@@ -25,6 +25,10 @@ constexpr std::array kSmoothers{
                                           StabilizationConfig::Smoother::kRecedingHorizon},
     Choice<StabilizationConfig::Smoother>{"paper_weights",
                                           StabilizationConfig::Smoother::kPaperWeights}};
+using LockMemory = RealTimeConfig::LockMemory;
+constexpr std::array kLockMemory{Choice<LockMemory>{"false", LockMemory::kNever},
+                                 Choice<LockMemory>{"try", LockMemory::kTry},
+                                 Choice<LockMemory>{"required", LockMemory::kRequired}};
 constexpr std::array kByteOrders{
     Choice<HitchAngleSignal::ByteOrder>{"motorola", HitchAngleSignal::ByteOrder::kMotorola},
     Choice<HitchAngleSignal::ByteOrder>{"intel", HitchAngleSignal::ByteOrder::kIntel}};
@@ -149,6 +153,24 @@ StitchingConfig ReadStitching(const YamlValue& value) {
     map["kappa"].Read({0, 1}, stitching.kappa);
     map.Finish();
     return stitching;
+}
+
+void ReadThreads(const YamlValue& value, RigConfig& config) {
+    ThreadSchedule& schedule = config.schedule;
+    YamlMap map = value.Map();
+    map["workers"].Read(Range<int>{1, kMaxWorkers}, config.workers);
+    map["priority"].Read(Range<int>{0, 99}, schedule.priority);
+    for (const YamlValue& cpu : map["affinity"].List({1, kMaxCpus}))
+        cpu.Read(Range<int>{0, kMaxCpus - 1}, schedule.affinity.emplace_back());
+    map.Finish();
+}
+
+RealTimeConfig ReadRealTime(const YamlValue& value) {
+    RealTimeConfig real_time;
+    YamlMap map = value.Map();
+    map["lock_memory"].Read(kLockMemory, real_time.lock_memory);
+    map.Finish();
+    return real_time;
 }
 
 std::optional<CanConfig> ReadCan(const YamlValue& value, const ConfigContext& context) {

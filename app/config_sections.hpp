@@ -30,6 +30,9 @@ bool ReadSource(const calib::YamlValue& value, const std::string& file_key,
 
 SimulationConfig ReadSimulation(const calib::YamlValue& value, const ConfigContext& context);
 StabilizationConfig ReadStabilization(const calib::YamlValue& value);
+/// Workers and their schedule.
+void ReadThreads(const calib::YamlValue& value, RigConfig& config);
+RealTimeConfig ReadRealTime(const calib::YamlValue& value);
 StitchingConfig ReadStitching(const calib::YamlValue& value);
 std::optional<CanConfig> ReadCan(const calib::YamlValue& value, const ConfigContext& context);
 PublishConfig ReadPublish(const calib::YamlValue& value);

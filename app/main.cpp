@@ -38,6 +38,8 @@ void AddRunOptions(CLI::App& verb, ReplayOptions& options) {
     verb.add_flag("--write-video", options.run.write_video, "write panorama.avi (Motion JPEG)");
     verb.add_flag("--write-views", options.run.write_views,
                   "write tractor.avi and trailer.avi: each view on the canvas before blending");
+    verb.add_flag("--trap-alloc", options.run.trap_alloc,
+                  "stop at the first heap call after the start and say who made it");
     verb.add_flag("--metrics", options.metrics,
                   "track the written views again and fill the report's quality figures");
 }

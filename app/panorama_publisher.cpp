@@ -1,8 +1,9 @@
 #include "app/panorama_publisher.hpp"
 
-#include <pthread.h>
-
+#include <algorithm>
 #include <cstring>
+
+#include "app/thread_schedule.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -20,7 +21,7 @@ PanoramaPublisher::PanoramaPublisher(hal::Publisher& publisher, const hal::Clock
       clock_(clock),
       telemetry_(telemetry),
       options_(options),
-      pool_(format, kBuffers),
+      pool_(format, options.drop_when_late ? kBuffersInTime : int{kBuffers}),
       encoder_(format, options.jpeg) {
     while (auto slot = pool_.Take()) free_.Append(*slot);
     thread_ = std::thread([this] { Work(); });
@@ -49,8 +50,13 @@ bool PanoramaPublisher::Append(const Item& item) {
     return true;
 }
 
+hal::PoolLevel PanoramaPublisher::pool() const {
+    const int slots = pool_.level().slots;
+    return {slots, std::min(slots, free_.low_water())};
+}
+
 void PanoramaPublisher::Work() {
-    pthread_setname_np(pthread_self(), "publish");
+    NameThisThread("publish");
     constexpr std::chrono::milliseconds kBeat{10};
     while (!filled_.finished()) {
         if (auto filled = filled_.TakeFor(kBeat)) {
@@ -62,24 +68,41 @@ void PanoramaPublisher::Work() {
 }
 
 void PanoramaPublisher::Send(Filled& filled) {
-    const Item& item = filled.item;
-    const auto jpeg = encoder_.Encode(item.picture);
+    const auto jpeg = Compress(filled.item.picture);
     if (!jpeg) {
         refused_.fetch_add(1, std::memory_order_relaxed);
         return;
     }
-    const hal::FrameHeader& header = item.picture.header;
-    Count(publisher_.Publish(hal::PanoramaImage{.sequence = header.sequence,
-                                                .captured_from = header.captured_at,
+    const StageTimer timer(times_.send);
+    SendImage(filled.item, jpeg.value());
+    SendStatus(filled.item);
+}
+
+hal::Result<std::span<const std::uint8_t>> PanoramaPublisher::Compress(
+    const hal::FrameView& picture) {
+    const StageTimer timer(times_.jpeg);
+    return encoder_.Encode(picture);
+}
+
+void PanoramaPublisher::SendImage(const Item& item, std::span<const std::uint8_t> jpeg) {
+    const hal::FrameView& picture = item.picture;
+    Count(publisher_.Publish(hal::PanoramaImage{.sequence = picture.header.sequence,
+                                                .captured_from = picture.header.captured_at,
                                                 .captured_until = item.captured_until,
-                                                .width_px = item.picture.format.width_px,
-                                                .height_px = item.picture.format.height_px,
+                                                .width_px = picture.format.width_px,
+                                                .height_px = picture.format.height_px,
                                                 .cameras_missing = item.status.cameras_missing,
                                                 .calibration_id = options_.calibration_id,
-                                                .jpeg = jpeg.value()}));
+                                                .jpeg = jpeg}));
+}
+
+void PanoramaPublisher::SendStatus(const Item& item) {
     hal::PanoramaStatus status = item.status;
     status.published_at = clock_.Now();
     status.dropped += dropped();
+    // A recording that is not paced was never captured at a moment of this clock.
+    if (options_.drop_when_late)
+        times_.latency.Add(status.published_at - item.picture.header.captured_at);
     Count(publisher_.Publish(status));
 }
 

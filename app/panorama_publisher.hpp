@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "app/jpeg_encoder.hpp"
+#include "app/stage_times.hpp"
 #include "app/telemetry_thread.hpp"
 #include "hal/blocking_ring.hpp"
 #include "hal/clock.hpp"
@@ -16,7 +17,9 @@ namespace hitchview::app {
 struct PanoramaPublisherOptions {
     JpegQualityGovernorOptions jpeg{};
     std::string calibration_id;
-    bool drop_when_late = true;  ///< false: Append waits, nothing is dropped (unpaced replay)
+    /// Real time: what does not get away in time is dropped, so that no latency queues up. False:
+    /// Append waits, nothing is dropped (unpaced replay).
+    bool drop_when_late = true;
 };
 
 /// Compresses and sends panoramas off the deadline, on a thread of its own (`publish`), and hands
@@ -29,8 +32,8 @@ class PanoramaPublisher {
                       const PanoramaPublisherOptions& options);
     ~PanoramaPublisher();
 
-    /// Before the telemetry first lets go of an angle: moment of the clock that is moment 0 of the
-    /// telemetry.
+    /// Before the telemetry first lets go of an angle, and when its pace slips: moment of the clock
+    /// that is moment 0 of the telemetry.
     void StartRecording(hal::Instant start) {
         start_ns_.store(start.count(), std::memory_order_release);
     }
@@ -46,6 +49,11 @@ class PanoramaPublisher {
     /// Sends what is left and ends the thread. Once.
     void Finish();
 
+    /// After Finish.
+    [[nodiscard]] const PublishTimes& times() const { return times_; }
+    /// Buffers for panoramas that are being sent or wait for it.
+    [[nodiscard]] hal::PoolLevel pool() const;
+
     [[nodiscard]] std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
     [[nodiscard]] std::uint64_t published() const {
         return published_.load(std::memory_order_relaxed);
@@ -58,9 +66,14 @@ class PanoramaPublisher {
         Item item;
     };
     static constexpr std::size_t kBuffers = 4;
+    /// One is being sent, one waits: it is at most a period old when its turn comes.
+    static constexpr int kBuffersInTime = 2;
 
     void Work();
     void Send(Filled& filled);
+    hal::Result<std::span<const std::uint8_t>> Compress(const hal::FrameView& picture);
+    void SendImage(const Item& item, std::span<const std::uint8_t> jpeg);
+    void SendStatus(const Item& item);
     void SendHitchAngles();
     void Count(const hal::Result<hal::Done>& outcome);
 
@@ -72,6 +85,7 @@ class PanoramaPublisher {
     hal::BlockingRing<hal::FramePool::Slot, kBuffers> free_;
     hal::BlockingRing<Filled, kBuffers> filled_;
     JpegEncoder encoder_;
+    PublishTimes times_;
     std::atomic<hal::Instant::rep> start_ns_{0};
     std::atomic<std::uint64_t> dropped_{0};
     std::atomic<std::uint64_t> published_{0};

@@ -5,31 +5,77 @@
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 namespace hitchview::app {
 namespace {
 
 using nlohmann::json;
 
-/// Resident memory of this process; null where /proc does not tell.
-json ResidentBytes() {
-    std::ifstream status("/proc/self/status");
-    for (std::string word; status >> word;) {
-        if (word != "VmRSS:") continue;
-        std::uint64_t kilobytes = 0;
-        if (status >> kilobytes) return kilobytes * 1024;
-    }
-    return nullptr;
+struct NamedTimes {
+    std::string_view name;
+    const StageTimes* times;
+};
+
+/// In the order of a panorama's way.
+std::vector<NamedTimes> AllTimes(const RunSummary& run) {
+    std::vector<NamedTimes> all;
+    for (int i = 0; i < kStages; ++i)
+        all.push_back({ToString(static_cast<Stage>(i)), &run.times[static_cast<std::size_t>(i)]});
+    all.push_back({"jpeg", &run.publishing.jpeg});
+    all.push_back({"publish", &run.publishing.send});
+    all.push_back({"latency", &run.publishing.latency});
+    return all;
 }
 
-json Stages(const AllStageTimes& times) {
-    json stages;
-    for (int i = 0; i < kStages; ++i) {
-        const StageTimes::Summary s = times[static_cast<std::size_t>(i)].Summarise();
-        stages[std::string(ToString(static_cast<Stage>(i)))] = {
-            {"p50_ms", s.p50_ms}, {"p99_ms", s.p99_ms}, {"max_ms", s.max_ms}};
+template <typename T>
+json OrNull(const std::optional<T>& known) {
+    return known ? json(*known) : json();
+}
+
+json HeapCallsByThread(const MemorySummary& memory) {
+    if (!memory.heap_calls) return nullptr;
+    json threads = json::object();
+    for (const auto& [name, calls] : memory.heap_calls->threads) {
+        json& sum = threads[name];
+        sum = (sum.is_null() ? 0 : sum.get<std::uint64_t>()) + calls;
     }
+    return threads;
+}
+
+/// Figures since READY, beside the rest of the report.
+void AddMemory(const MemorySummary& memory, json& report) {
+    const auto& calls = memory.heap_calls;
+    report["heap_calls_after_ready"] = calls ? json(calls->frame_path) : json();
+    report["heap_calls_by_thread"] = HeapCallsByThread(memory);
+    report["heap_calls_files"] = calls ? json(calls->files) : json();
+    report["rss_bytes_at_ready"] = OrNull(memory.at_ready.rss_bytes);
+    report["rss_bytes"] = OrNull(memory.at_end.rss_bytes);
+    report["minor_faults_after_ready"] = memory.at_end.minor_faults - memory.at_ready.minor_faults;
+    report["major_faults_after_ready"] = memory.at_end.major_faults - memory.at_ready.major_faults;
+}
+
+json StageJson(const StageTimes& times) {
+    if (times.empty()) return {{"p50_ms", nullptr}, {"p99_ms", nullptr}, {"max_ms", nullptr}};
+    const StageTimes::Summary s = times.Summarise();
+    return {{"p50_ms", s.p50_ms}, {"p99_ms", s.p99_ms}, {"max_ms", s.max_ms}};
+}
+
+json Stages(const RunSummary& run) {
+    json stages;
+    for (const NamedTimes& stage : AllTimes(run))
+        stages[std::string(stage.name)] = StageJson(*stage.times);
     return stages;
+}
+
+json Pools(const RunSummary& run) {
+    json pools = json::object();
+    for (const auto& [name, level] : run.pools) {
+        if (level.slots == 0) continue;
+        pools[name] = {{"slots", level.slots}, {"low_water", level.low_water}};
+    }
+    return pools;
 }
 
 json EmptyUnit() {
@@ -81,15 +127,15 @@ json MakeReport(const RunSummary& run, const json& quality) {
         {"schema", 1},
         {"frames", run.frames},
         {"dropped", run.dropped},
+        {"lightened", run.lightened},
         {"period_ms", run.period_ms},
         {"frames_per_second",
          run.duration_s > 0 ? json(static_cast<double>(run.frames) / run.duration_s) : json()},
-        {"stages", Stages(run.times)},
+        {"stages", Stages(run)},
         {"deadline_misses", run.deadline_misses},
-        {"heap_calls_after_ready", nullptr},
-        {"heap_calls_files", nullptr},
-        {"rss_bytes", ResidentBytes()},
         {"calibration_id", run.calibration_id.empty() ? json() : json(run.calibration_id)}};
+    AddMemory(run.memory, report);
+    report["pools"] = Pools(run);
     for (const algo::Unit unit : algo::kUnits) {
         if (run.cameras[unit] > 0) report["units"][ToString(unit)] = EmptyUnit();
     }
@@ -125,11 +171,11 @@ std::string Table(const RunSummary& run) {
     text << ", " << run.dropped << " dropped, " << run.deadline_misses
          << " longer than a period of " << run.period_ms << " ms\n"
          << std::setprecision(2) << "  stage      p50 ms   p99 ms   max ms\n";
-    for (int i = 0; i < kStages; ++i) {
-        const StageTimes::Summary s = run.times[static_cast<std::size_t>(i)].Summarise();
-        text << "  " << std::left << std::setw(8) << ToString(static_cast<Stage>(i)) << std::right
-             << std::setw(9) << s.p50_ms << std::setw(9) << s.p99_ms << std::setw(9) << s.max_ms
-             << '\n';
+    for (const NamedTimes& stage : AllTimes(run)) {
+        if (stage.times->empty()) continue;
+        const StageTimes::Summary s = stage.times->Summarise();
+        text << "  " << std::left << std::setw(8) << stage.name << std::right << std::setw(9)
+             << s.p50_ms << std::setw(9) << s.p99_ms << std::setw(9) << s.max_ms << '\n';
     }
     return text.str();
 }

@@ -7,6 +7,8 @@
 #include "algo/unified_vertex_motion.hpp"
 #include "app/board.hpp"
 #include "app/frame_synchronizer.hpp"
+#include "app/panorama_loop.hpp"
+#include "app/real_time.hpp"
 #include "app/run_outputs.hpp"
 #include "app/worker_pool.hpp"
 
@@ -53,10 +55,6 @@ hal::Checked<hal::Done> MakeFolder(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder, refused);
     if (refused) return folder.string() + ": " + refused.message();
     return hal::Done{};
-}
-
-std::string CameraFailure(hal::Error error) {
-    return std::string("a camera gives no more frames: ") + hal::ToString(error);
 }
 
 /// The estimation of a run.
@@ -122,80 +120,18 @@ RunSummary EmptySummary(const RigConfig& config, const Board& board, const RigGe
     return summary;
 }
 
-/// Drives one opened rig; see RunRig.
-class Run {
- public:
-    Run(Board& board, Pipeline& pipeline, RunOutputs& outputs, const RunOptions& options,
-        RunSummary& summary)
-        : board_(board),
-          pipeline_(pipeline),
-          outputs_(outputs),
-          options_(options),
-          summary_(summary) {}
-
-    hal::Checked<hal::Done> Loop(const std::atomic<bool>& stop, const ShownHook& hook) {
-        FrameSynchronizer synchronizer(board_.cameras());
-        start_ = board_.clock().Now();
-        outputs_.Start(start_);
-        std::uint64_t taken = 0;
-        while (!stop && !Limited(options_, taken)) {
-            auto set = synchronizer.WaitSet();
-            if (!set && set.error() == hal::Error::kEndOfStream) break;
-            if (!set) return CameraFailure(set.error());
-            ++taken;
-            if (options_.realtime && !WaitForTurn(set->sequence)) continue;
-            const ShownPanorama* shown = pipeline_.Process(std::move(*set));
-            CountDeadline();
-            if (shown != nullptr) {
-                if (const auto done = Show(*shown, hook); !done) return done;
-            }
-        }
-        while (const ShownPanorama* shown = pipeline_.Flush()) {
-            if (const auto done = Show(*shown, hook); !done) return done;
-        }
-        summary_.times = pipeline_.times();
-        summary_.duration_s = std::chrono::duration<double>(board_.clock().Now() - start_).count();
-        return hal::Done{};
+/// Adds what cameras and outputs know when they have ended.
+void Complete(const RigConfig& config, Board& board, const RunOutputs& outputs,
+              RunSummary& summary) {
+    summary.dropped += outputs.dropped();
+    summary.publishing = outputs.times();
+    for (const algo::Unit unit : algo::kUnits) {
+        for (std::size_t i = 0; i < config.units[unit].cameras.size(); ++i)
+            summary.pools.push_back(
+                {config.units[unit].cameras[i].name, board.cameras()[unit][i]->pool()});
     }
-
- private:
-    /// False when the set's turn is over: it is dropped, so that no latency queues up.
-    bool WaitForTurn(std::uint32_t sequence) {
-        const hal::Instant due = start_ + board_.period() * sequence;
-        if (board_.clock().Now() > due + board_.period()) {
-            ++summary_.dropped;
-            return false;
-        }
-        board_.clock().SleepUntil(due);
-        return true;
-    }
-
-    void CountDeadline() {
-        summary_.newest_total_ms =
-            pipeline_.times()[static_cast<std::size_t>(Stage::kTotal)].last_ms();
-        if (summary_.newest_total_ms > summary_.period_ms) ++summary_.deadline_misses;
-    }
-
-    hal::Checked<hal::Done> Show(const ShownPanorama& shown, const ShownHook& hook) {
-        ++summary_.frames;
-        for (const algo::Overlap overlap : algo::kOverlaps) {
-            if (shown.composition->seams[overlap] == algo::SeamState::kLocked)
-                ++summary_.locked_frames[overlap];
-        }
-        if (const auto& known = shown.composition->articulation) summary_.articulation.Add(*known);
-        if (options_.offline && options_.progress) options_.progress("shown", summary_.frames);
-        const auto done = outputs_.Show(shown, pipeline_, summary_);
-        if (done && hook) hook(shown, pipeline_);
-        return done;
-    }
-
-    Board& board_;
-    Pipeline& pipeline_;
-    RunOutputs& outputs_;
-    const RunOptions& options_;
-    RunSummary& summary_;
-    hal::Instant start_{};
-};
+    outputs.AddPools(summary.pools);
+}
 
 }  // namespace
 
@@ -211,6 +147,10 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
                                 const std::atomic<bool>& stop, const ShownHook& hook) {
     auto calibration = Calibration(config);
     if (!calibration) return calibration.error();
+    if (options.realtime) {
+        const auto prepared = PrepareRealTime(config.real_time);
+        if (!prepared) return prepared.error();
+    }
     const algo::UnifiedVertexMotionOptions motion_options = MotionOptions(config, options);
     const int held = motion_options.lookahead_frames + 2;
     auto board = Board::Open(config, held);
@@ -218,30 +158,34 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
     if (!rig) return rig.error();
 
-    WorkerPool workers(options.workers.value_or(config.workers));
+    WorkerPool workers(options.workers.value_or(config.workers),
+                       options.realtime ? config.schedule : ThreadSchedule{});
+    if (options.realtime && config.schedule.given())
+        LogSteps({{"workers scheduled", workers.refusal()}});
     const Motion motion = MakeMotion(rig.value(), motion_options, options);
     Pipeline pipeline(rig.value(), *motion.any, workers);
     if (const auto primed = Prime(**board, pipeline); !primed) return primed.error();
     // A recording starts again from its first frame.
     board = Board::Open(config, held);
-    if (!board) return board.error();
-    if (motion.offline != nullptr) {
+    if (board && motion.offline != nullptr) {
         if (const auto learnt = Learn(**board, *motion.offline, options, workers, stop); !learnt)
             return learnt.error();
         board = Board::Open(config, held);
-        if (!board) return board.error();
     }
+    if (!board) return board.error();
 
     RunSummary summary = EmptySummary(config, **board, rig.value(), *calibration);
     if (const auto made = MakeFolder(options.out); !made) return made.error();
     auto outputs = RunOutputs::Open(config, options, **board, summary, pipeline.format());
     if (!outputs) return outputs.error();
-    const auto done = Run(**board, pipeline, **outputs, options, summary).Loop(stop, hook);
+    if (options.realtime) EnterRealTime(config.schedule);
+    PanoramaLoop loop({**board, *motion.any, pipeline, **outputs}, options, summary);
+    const auto done = loop.Run(stop, hook);
     pipeline.Start();  // gives the last leases back while the cameras live
     const auto finished = (*outputs)->Finish();
     if (!done) return done.error();
     if (!finished) return finished.error();
-    summary.dropped += (*outputs)->dropped();
+    Complete(config, **board, **outputs, summary);
     return summary;
 }
 

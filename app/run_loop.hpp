@@ -5,10 +5,13 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "algo/paper_stages.hpp"
 #include "app/config.hpp"
+#include "app/heap_calls.hpp"
 #include "app/pipeline.hpp"
+#include "app/resources.hpp"
 
 namespace hitchview::app {
 
@@ -28,6 +31,7 @@ struct RunOptions {
     bool write_video = false;  ///< out/panorama.avi
     bool write_views = false;  ///< out/tractor.avi, out/trailer.avi
     bool publish = false;      ///< over LCM
+    bool trap_alloc = false;   ///< the first heap call after READY stops the program
 };
 
 /// The articulation over a run, as the images told it.
@@ -40,19 +44,35 @@ struct ArticulationSummary {
     void Add(const algo::Articulation& articulation);
 };
 
+/// Memory from READY to the last panorama.
+struct MemorySummary {
+    std::optional<HeapCallCounts> heap_calls{};  ///< empty where they cannot be counted
+    Resources at_ready{};
+    Resources at_end{};
+};
+
+struct PoolSummary {
+    std::string name;
+    hal::PoolLevel level;
+};
+
 /// What a run did.
 struct RunSummary {
     std::uint64_t frames = 0;           ///< panoramas shown
     std::uint64_t dropped = 0;          ///< frame sets never shown
+    std::uint64_t lightened = 0;        ///< frame sets whose inter matching was left out
     std::uint64_t deadline_misses = 0;  ///< frame sets that took longer than a period
     double period_ms = 0;
     double duration_s = 0;  ///< from the first frame set to the last panorama
     std::string calibration_id;
-    double newest_total_ms = 0;  ///< of the frame set processed last
-    AllStageTimes times{};       ///< when the run has ended
+    double newest_total_ms = 0;        ///< of the frame set processed last
+    AllStageTimes times{};             ///< when the run has ended
+    PublishTimes publishing{};         ///< same
+    std::vector<PoolSummary> pools{};  ///< same
     algo::PerOverlap<std::uint64_t> locked_frames;
     ArticulationSummary articulation{};
     algo::PerUnit<int> cameras;
+    MemorySummary memory{};
     bool ring = false;
 };
 

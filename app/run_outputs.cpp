@@ -43,6 +43,11 @@ hal::PanoramaStatus Status(const ShownPanorama& shown, const RunSummary& run, ha
     return status;
 }
 
+/// Why a video cannot be continued.
+std::string Refusal(VideoWriter& video) {
+    return "cannot write the video: " + video.Finish().error();
+}
+
 }  // namespace
 
 hal::Checked<std::unique_ptr<RunOutputs>> RunOutputs::Open(const RigConfig& config,
@@ -107,12 +112,10 @@ void RunOutputs::Start(hal::Instant start) {
 hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& pipeline,
                                          const RunSummary& run) {
     if (publisher_) Publish(shown, run);
-    const std::string full = "cannot write the video: ";
-    if (panorama_ && !panorama_->Append(shown.picture)) return full + panorama_->Finish().error();
+    if (panorama_ && !panorama_->Append(shown.picture)) return Refusal(*panorama_);
     for (const algo::Unit unit : algo::kUnits) {
         if (!views_[unit]) continue;
-        if (!views_[unit]->Append(pipeline.RenderView(unit)))
-            return full + views_[unit]->Finish().error();
+        if (!views_[unit]->Append(pipeline.RenderView(unit))) return Refusal(*views_[unit]);
     }
     return hal::Done{};
 }
@@ -124,6 +127,11 @@ void RunOutputs::Publish(const ShownPanorama& shown, const RunSummary& run) {
     publisher_->Append({.picture = picture,
                         .captured_until = start_ + shown.captured_until,
                         .status = Status(shown, run, start_)});
+}
+
+void RunOutputs::AddPools(std::vector<PoolSummary>& pools) const {
+    if (publisher_) pools.push_back({"panorama", publisher_->pool()});
+    if (telemetry_) pools.push_back({"hitch_angle", telemetry_->pool()});
 }
 
 hal::Checked<hal::Done> RunOutputs::Finish() {

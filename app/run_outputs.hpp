@@ -20,12 +20,18 @@ class RunOutputs {
                                                           const RunSummary& run,
                                                           const hal::FrameFormat& format);
 
-    /// Once, before the first Show: CLOCK_MONOTONIC moment of the recording's moment 0.
+    /// Before the first Show, and again when the recording's pace slips: CLOCK_MONOTONIC moment of
+    /// its moment 0.
     void Start(hal::Instant start);
     /// `run`: counts so far.
     hal::Checked<hal::Done> Show(const ShownPanorama& shown, Pipeline& pipeline,
                                  const RunSummary& run);
     hal::Checked<hal::Done> Finish();
+    /// After Finish; empty times where nothing was published.
+    [[nodiscard]] PublishTimes times() const {
+        return publisher_ ? publisher_->times() : PublishTimes{};
+    }
+    void AddPools(std::vector<PoolSummary>& pools) const;
     [[nodiscard]] std::uint64_t dropped() const { return publisher_ ? publisher_->dropped() : 0; }
 
  private:

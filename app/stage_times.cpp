@@ -13,12 +13,13 @@ void StageTimes::Add(std::chrono::nanoseconds duration) {
 StageTimes::Summary StageTimes::Summarise() const {
     if (count_ == 0) return {};
     const std::size_t n = std::min(count_, kWindow);
-    std::array<float, kWindow> sorted = window_ms_;
-    std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
-    return {.last_ms = window_ms_[(count_ - 1) % kWindow],
-            .p50_ms = sorted[n / 2],
-            .p99_ms = sorted[n * 99 / 100],
-            .max_ms = max_ms_};
+    std::array<float, kWindow> window = window_ms_;
+    const auto end = window.begin() + static_cast<std::ptrdiff_t>(n);
+    const auto p50 = window.begin() + static_cast<std::ptrdiff_t>(n / 2);
+    const auto p99 = window.begin() + static_cast<std::ptrdiff_t>(n * 99 / 100);
+    std::nth_element(window.begin(), p50, end);
+    if (p99 != p50) std::nth_element(p50 + 1, p99, end);
+    return {.last_ms = last_ms(), .p50_ms = *p50, .p99_ms = *p99, .max_ms = max_ms_};
 }
 
 }  // namespace hitchview::app

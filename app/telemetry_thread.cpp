@@ -1,10 +1,9 @@
 #include "app/telemetry_thread.hpp"
 
-#include <pthread.h>
-
 #include <limits>
 
 #include "app/hitch_angle_decoder.hpp"
+#include "app/thread_schedule.hpp"
 #include "hal/expect.hpp"
 
 namespace hitchview::app {
@@ -55,7 +54,7 @@ TelemetryCounts TelemetryThread::counts() const {
 }
 
 void TelemetryThread::Work() {
-    pthread_setname_np(pthread_self(), "can");
+    NameThisThread("can");
     while (!stop_) {
         const hal::Result<hal::CanFrame> frame = bus_.WaitFrame(kLongestWait);
         if (frame) {

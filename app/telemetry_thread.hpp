@@ -54,6 +54,8 @@ class TelemetryThread {
     std::optional<hal::HitchAngle> Take() { return angles_.Take(); }
 
     [[nodiscard]] TelemetryCounts counts() const;
+    /// Places for angles that wait to be taken.
+    [[nodiscard]] hal::PoolLevel pool() const { return angles_.level(); }
 
  private:
     void Work();

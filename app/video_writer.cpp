@@ -1,11 +1,12 @@
 #include "app/video_writer.hpp"
 
-#include <pthread.h>
 #include <turbojpeg.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+
+#include "app/thread_schedule.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -84,8 +85,7 @@ hal::Checked<hal::Done> VideoWriter::Finish() {
 
 // A refused frame's slot still goes round, so that Append never waits for ever.
 void VideoWriter::WriteAll() {
-    constexpr std::size_t kLongestName = 15;
-    pthread_setname_np(pthread_self(), ("out-" + options_.name).substr(0, kLongestName).c_str());
+    NameThisThread("out-" + options_.name);
     while (const auto maybe_slot = filled_.Take()) {
         if (!refused_) WriteOne(*maybe_slot);
         free_.Append(*maybe_slot);

@@ -104,6 +104,9 @@ Checked<std::unique_ptr<LcmPublisher>> LcmPublisher::Create(const LcmPublisherOp
         return "LCM cannot use '" + options.url +
                "': is there a route to 224.0.0.0/4 and the flag 'multicast' on its interface?";
     }
+    // liblcm makes its lock, and a log file its buffer, with the first message.
+    if (lcm_publish(lcm.get(), kLcmStartChannel, "", 0) != 0)
+        return "LCM cannot send to '" + options.url + "'";
     return std::unique_ptr<LcmPublisher>(new LcmPublisher(options, std::move(lcm), clock));
 }
 

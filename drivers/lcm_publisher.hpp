@@ -12,6 +12,9 @@
 
 namespace hitchview::drivers {
 
+/// Says that a publisher has started, and nothing else.
+inline constexpr const char* kLcmStartChannel = "HITCHVIEW_START";
+
 struct LcmPublisherOptions {
     std::string url = kDefaultLcmUrl;
     std::string panorama_channel = "PANORAMA";
@@ -21,11 +24,10 @@ struct LcmPublisherOptions {
 };
 
 /// Panorama as bot_core.image_t, status and hitch angle as hitchview types, over LCM. Messages are
-/// encoded into one buffer taken at construction. With the first message liblcm makes its lock;
-/// publishing allocates nothing after that.
+/// encoded into one buffer taken at construction; publishing takes no memory.
 class LcmPublisher final : public hal::Publisher {
  public:
-    /// `clock` must outlive the publisher.
+    /// Sends one empty message on kLcmStartChannel. `clock` must outlive the publisher.
     static hal::Checked<std::unique_ptr<LcmPublisher>> Create(const LcmPublisherOptions& options,
                                                               const hal::Clock& clock);
 

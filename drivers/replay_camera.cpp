@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <future>
@@ -96,6 +97,11 @@ hal::Result<hal::FrameLease> ReplayCamera::DoWaitFrame(std::chrono::milliseconds
     return hal::FrameLease(*this, slot.index,
                            {pool_->format(), maybe_frame->header,
                             hal::PackedPlanes(pool_->format(), slot.bytes.data())});
+}
+
+// The ring is larger than the pool; what it keeps free, nobody has.
+hal::PoolLevel ReplayCamera::DoPool() const {
+    return {options_.slots, std::min(options_.slots, free_.low_water())};
 }
 
 void ReplayCamera::DoReturn(int slot) {

@@ -47,6 +47,7 @@ class ReplayCamera final : public hal::Camera, private hal::FrameOwner {
     [[nodiscard]] const hal::FrameFormat& DoFormat() const override { return pool_->format(); }
     hal::Result<hal::FrameLease> DoWaitFrame(std::chrono::milliseconds timeout) override;
     void DoReturn(int slot) override;
+    [[nodiscard]] hal::PoolLevel DoPool() const override;
 
     ReplayCameraOptions options_;
     double rate_hz_ = 0;

@@ -17,6 +17,7 @@ class SimulatedCamera final : public hal::Camera {
  private:
     [[nodiscard]] const hal::FrameFormat& DoFormat() const override { return pool_.format(); }
     hal::Result<hal::FrameLease> DoWaitFrame(std::chrono::milliseconds timeout) override;
+    [[nodiscard]] hal::PoolLevel DoPool() const override { return pool_.level(); }
 
     const SimulatedRig& rig_;
     int camera_index_;

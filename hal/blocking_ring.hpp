@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <condition_variable>
@@ -52,12 +53,20 @@ class BlockingRing {
         return closed_ && count_ == 0;
     }
 
+    /// Fewest items that a Take has ever left: for a ring of free slots, how close it came to
+    /// running dry. The capacity before the first.
+    [[nodiscard]] int low_water() const {
+        const std::lock_guard lock(mutex_);
+        return static_cast<int>(fewest_);
+    }
+
  private:
     std::optional<T> TakeFirst() {
         if (count_ == 0) return std::nullopt;
         std::optional<T> item(std::move(items_[first_]));
         first_ = (first_ + 1) % kCapacity;
         --count_;
+        fewest_ = std::min(fewest_, count_);
         changed_.notify_all();
         return item;
     }
@@ -67,6 +76,7 @@ class BlockingRing {
     std::array<T, kCapacity> items_{};
     std::size_t first_ = 0;
     std::size_t count_ = 0;
+    std::size_t fewest_ = kCapacity;
     bool closed_ = false;
 };
 

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "hal/frame_pool.hpp"
+#include "hal/pool_level.hpp"
 #include "hal/result.hpp"
 
 namespace hitchview::hal {
@@ -23,9 +24,13 @@ class Camera {
         return DoWaitFrame(timeout);
     }
 
+    /// The frames that it can lend. Any thread.
+    [[nodiscard]] PoolLevel pool() const { return DoPool(); }
+
  private:
     [[nodiscard]] virtual const FrameFormat& DoFormat() const = 0;
     virtual Result<FrameLease> DoWaitFrame(std::chrono::milliseconds timeout) = 0;
+    [[nodiscard]] virtual PoolLevel DoPool() const { return {}; }
 };
 
 }  // namespace hitchview::hal

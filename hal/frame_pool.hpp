@@ -9,6 +9,7 @@
 
 #include "hal/expect.hpp"
 #include "hal/frame.hpp"
+#include "hal/pool_level.hpp"
 
 namespace hitchview::hal {
 
@@ -100,6 +101,7 @@ class FramePool final : public FrameOwner {
     [[nodiscard]] const FrameFormat& format() const { return format_; }
     /// Fewest frames that were ever free: how close the pool came to running dry.
     [[nodiscard]] int low_water() const { return low_water_.load(std::memory_order_relaxed); }
+    [[nodiscard]] PoolLevel level() const { return {slots_, low_water()}; }
     [[nodiscard]] int free_count() const {
         return __builtin_popcountll(free_.load(std::memory_order_relaxed));
     }

@@ -10,7 +10,7 @@ namespace {
 
 using tests::HeapCallsOfThisThread;
 
-TEST(LcmHeapTest, PublishingTakesNoMemoryAfterTheFirstMessage) {
+TEST(LcmHeapTest, PublishingTakesNoMemory) {
     if (!tests::kHeapCallsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
     drivers::SteadyClock clock;
     auto publisher = drivers::LcmPublisher::Create({}, clock);
@@ -18,7 +18,7 @@ TEST(LcmHeapTest, PublishingTakesNoMemoryAfterTheFirstMessage) {
     const std::vector<std::uint8_t> jpeg(150'000, 1);
     const hal::PanoramaImage image{.calibration_id = "0123456789abcdef", .jpeg = jpeg};
 
-    bool all_sent = publisher.value()->Publish(hal::PanoramaStatus{}).ok();
+    bool all_sent = true;
     const std::uint64_t before = HeapCallsOfThisThread();
     for (int i = 0; i < 50; ++i) {
         all_sent = publisher.value()->Publish(image).ok() &&

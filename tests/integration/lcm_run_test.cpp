@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <thread>
 
 #include "app/program.hpp"
@@ -14,7 +13,7 @@
 #include "drivers/simulated_motion.hpp"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
-#include "tests/support/simulated_rig_files.hpp"
+#include "tests/support/small_drive.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 // `hitchview run` beside programs of other people. Runs in a network namespace of its own
@@ -32,25 +31,6 @@ constexpr int kMostDropped = kFrames;
 #else
 constexpr int kMostDropped = kFrames / 3;
 #endif
-
-/// Grey JPEG sequences of all eight cameras, one folder each: decoding them costs next to nothing.
-void RecordDrive(const TemporaryFolder& folder) {
-    drivers::SimulationOptions options{.frames = kFrames, .width_px = 320, .height_px = 180};
-    const auto created = drivers::SimulatedRig::Create(options);
-    ASSERT_TRUE(created) << created.error();
-    const auto& rig = created.value();
-    drivers::Renderer::Workspace workspace;
-    std::vector<std::uint8_t> nv12(hal::FrameBytes(rig->format()));
-    for (int camera = 0; camera < drivers::SimulatedRig::kCameras; ++camera) {
-        const std::filesystem::path pictures = folder / std::string(rig->camera(camera).name);
-        std::filesystem::create_directories(pictures);
-        for (int frame = 0; frame < kFrames; ++frame) {
-            rig->Render(camera, frame, workspace, nv12);
-            const cv::Mat grey(180, 320, CV_8U, nv12.data());
-            ASSERT_TRUE(cv::imwrite(pictures / (std::to_string(frame) + ".jpg"), grey));
-        }
-    }
-}
 
 /// bot_core_receiver as a child process.
 class Receiver {
@@ -120,8 +100,7 @@ class LcmRunTest : public testing::Test {
  protected:
     static void SetUpTestSuite() {
         folder_ = std::make_unique<TemporaryFolder>();
-        tests::WriteSimulatedCalibration(*folder_, 320, 180);
-        RecordDrive(*folder_);
+        tests::RecordSmallDrive(*folder_, kFrames, kFrames);
     }
     static void TearDownTestSuite() { folder_.reset(); }
 
@@ -132,11 +111,7 @@ class LcmRunTest : public testing::Test {
 
     /// `hitchview run` on the recorded drive with the usual canvas, logged to `log.lcm`.
     void Run(const std::string& more) {
-        const std::string rig = folder_->Write(
-            "rig.yaml", "schema: 1\ncanvas: {projection: cylinder}\ncalibration: rig.calib.yaml\n" +
-                            tests::SimulatedUnits(
-                                [](const std::string& name) { return "{replay: " + name + "}"; }) +
-                            more);
+        const std::string rig = tests::SmallDriveRig(*folder_, "{projection: cylinder}", more);
         std::filesystem::remove(*folder_ / "log.lcm");
         Receiver receiver(kFrames);
         {

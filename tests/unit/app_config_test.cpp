@@ -85,7 +85,8 @@ TEST_F(ConfigTest, WhatTheFileSaysReplacesTheDefaults) {
              "stabilization: {border: covered, cropping: 0.8, enabled: false,"
              " lookahead_frames: 10, smoother: paper_weights}\n"
              "stitching: {kappa: 0.25, enabled: false}\n"
-             "threads: {workers: 7}\n"
+             "threads: {workers: 7, priority: 50, affinity: [3, 1]}\n"
+             "real_time: {lock_memory: required}\n"
              "period_ms: 40.5\n"
              "can: {source: {simulated: true}, hitch_angle: {id: 0x7A1, start_bit: 7,"
              " length_bits: 12, byte_order: motorola, signed: true, factor_deg: -0.1,"
@@ -101,6 +102,9 @@ TEST_F(ConfigTest, WhatTheFileSaysReplacesTheDefaults) {
     EXPECT_EQ(rig.stitching.kappa, 0.25);
     EXPECT_FALSE(rig.stitching.enabled);
     EXPECT_EQ(rig.workers, 7);
+    EXPECT_EQ(rig.schedule.priority, 50);
+    EXPECT_EQ(rig.schedule.affinity, (std::vector<int>{3, 1}));
+    EXPECT_EQ(rig.real_time.lock_memory, RealTimeConfig::LockMemory::kRequired);
     EXPECT_EQ(*rig.period, std::chrono::microseconds(40500));
     EXPECT_EQ(rig.can->source, CanConfig::Source::kSimulated);
     EXPECT_EQ(rig.can->hitch_angle.id, 0x7A1U);
@@ -150,8 +154,13 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadFile{kPlane + "stabilisation: {}\n",
                 "rig.yaml:6: stabilisation is no key, must be one of schema, canvas, calibration, "
-                "units, simulation, stabilization, stitching, placement, threads, period_ms, can, "
-                "publish"},
+                "units, simulation, stabilization, stitching, placement, threads, real_time, "
+                "period_ms, can, publish"},
+        BadFile{kPlane + "threads: {priority: 100, affinity: [0, -1]}\n"
+                         "real_time: {lock_memory: always}\n",
+                "rig.yaml:6: threads.priority is 100, must be 0 to 99\n"
+                "rig.yaml:6: threads.affinity[1] is -1, must be 0 to 255\n"
+                "rig.yaml:7: real_time.lock_memory is always, must be one of false, try, required"},
         BadFile{kPlane + "stabilization: {lookahead: 3}\n",
                 "rig.yaml:6: stabilization.lookahead is no key, must be one of enabled, "
                 "lookahead_frames, border, cropping, smoother"},
@@ -342,8 +351,9 @@ TEST_P(RigExampleKeysTest, EveryKeyOfTheSectionIsShown) {
 INSTANTIATE_TEST_SUITE_P(Sections, RigExampleKeysTest,
                          testing::Values("x: 1\n", "simulation: {x: 1}\n",
                                          "stabilization: {x: 1}\n", "stitching: {x: 1}\n",
-                                         "threads: {x: 1}\n", "can: {x: 1}\n",
-                                         "can: {hitch_angle: {x: 1}}\n", "publish: {x: 1}\n"));
+                                         "threads: {x: 1}\n", "real_time: {x: 1}\n",
+                                         "can: {x: 1}\n", "can: {hitch_angle: {x: 1}}\n",
+                                         "publish: {x: 1}\n"));
 
 }  // namespace
 }  // namespace hitchview::app

@@ -33,11 +33,15 @@ class LcmPublisherTest : public testing::Test {
         return std::move(publisher.value());
     }
 
-    /// The only message of the log.
+    /// The only message of the log beside the one that tells of the start.
     template <typename Message>
     Message Read(const std::string& channel, int (*decode)(const void*, int, int, Message*)) const {
         Message message{};
         lcm_eventlog_t* const log = lcm_eventlog_create(log_.c_str(), "r");
+        lcm_eventlog_event_t* const start = lcm_eventlog_read_next_event(log);
+        EXPECT_EQ(std::string(start->channel, start->channellen), kLcmStartChannel);
+        EXPECT_EQ(start->datalen, 0);
+        lcm_eventlog_free_event(start);
         lcm_eventlog_event_t* const event = lcm_eventlog_read_next_event(log);
         EXPECT_EQ(std::string(event->channel, event->channellen), channel);
         EXPECT_EQ(decode(event->data, 0, event->datalen, &message), event->datalen);
@@ -97,6 +101,8 @@ TEST_F(LcmPublisherTest, OurSubscriberReadsWhatWasPublished) {
 
     auto subscriber = LcmSubscriber::Create({.url = "file://" + log_ + "?mode=r&speed=0"});
     ASSERT_TRUE(subscriber) << subscriber.error();
+    // The message of the start comes first and is not for this subscriber.
+    EXPECT_EQ(subscriber.value()->WaitImage(milliseconds(1000)).error(), Error::kTimeout);
     const auto result = subscriber.value()->WaitImage(milliseconds(1000));
     ASSERT_TRUE(result) << ToString(result.error());
     const hal::PanoramaImage& image = result.value();

@@ -75,6 +75,26 @@ TEST(BlockingRingTest, AWaitWithALimitEndsEmptyAndNotFinished) {
     EXPECT_FALSE(ring.finished());
 }
 
+TEST(RingTest, RemembersHowNearItCameToBeingFull) {
+    Ring<int, 8> ring;
+    EXPECT_EQ(ring.level().low_water, 8);
+    for (int i = 0; i < 5; ++i) ring.Append(i);
+    while (ring.Take()) {
+    }
+    ring.Append(5);
+    EXPECT_EQ(ring.level().slots, 8);
+    EXPECT_EQ(ring.level().low_water, 3);
+}
+
+TEST(BlockingRingTest, RemembersHowNearItCameToBeingEmpty) {
+    BlockingRing<int, 8> free;
+    EXPECT_EQ(free.low_water(), 8);
+    for (int i = 0; i < 5; ++i) free.Append(i);
+    for (int i = 0; i < 3; ++i) free.Take();
+    free.Append(5);
+    EXPECT_EQ(free.low_water(), 2);
+}
+
 TEST(BlockingRingTest, ClosingFreesAWriterThatWaits) {
     BlockingRing<int, 1> ring;
     EXPECT_TRUE(ring.Append(1));
