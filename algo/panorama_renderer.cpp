@@ -173,8 +173,11 @@ void PanoramaRenderer::RenderRow(const Scene& scene, const PanoramaPlanes& out, 
     Strip strip;
     for (int first = 0; first * kBlock < out.width_px; first += kStrip) {
         GatherStrip(scene, row, first, strip);
-        for (int i = 0; i < strip.count; ++i)
-            strip.blocks[static_cast<std::size_t>(i)].Render(scene.no_data, strip.picture.planes());
+        const std::span blocks(strip.blocks.data(), static_cast<std::size_t>(strip.count));
+        DrawBlocks(blocks, strip.picture.planes());
+        for (const PanoramaBlock& block : blocks) {
+            if (!block.suits_kernel()) block.RenderPixels(scene.no_data, strip.picture.planes());
+        }
         strip.picture.CopyTo(out, first * kBlock, row * kBlock);
     }
 }

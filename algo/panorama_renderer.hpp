@@ -8,6 +8,15 @@
 
 namespace hitchview::algo {
 
+/// A square that is drawn at once, as a part of a block of the map.
+struct BlockPart {
+    int row = 0;  ///< block of the map
+    int col = 0;
+    int down = 0;  ///< which of its squares
+    int across = 0;
+    int count = 1;  ///< squares to a side of a block
+};
+
 /// Makes the output picture: every pixel is read once, bilinear, straight from the camera frames;
 /// where cameras or units are blended, once from each of them. Bit-identical on any number of
 /// tasks.
@@ -36,14 +45,6 @@ class PanoramaRenderer {
     };
 
     struct Strip;
-    /// A square that is drawn at once, as a part of a block of the map.
-    struct BlockPart {
-        int row = 0;  ///< block of the map
-        int col = 0;
-        int down = 0;  ///< which of its squares
-        int across = 0;
-        int count = 1;  ///< squares to a side of a block
-    };
 
     [[nodiscard]] Samplers SamplersOf(const ComposedMap& map, const RigFrames& frames) const;
     static void Gather(const Scene& scene, const BlockPart& part, unsigned sources,

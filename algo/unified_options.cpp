@@ -102,7 +102,7 @@ SeamOptions SeamOptionsOf(const Projection& canvas) {
         options.path.least_win = 0.05F;
         options.path.least_gain = 0.3F;
         options.half_width_px *= Fineness(canvas);
-        options.path.glide_px = 16 * Fineness(canvas);
+        options.path.glide_px = static_cast<float>(16 * Fineness(canvas));
         options.path.dearest_way = 30;
     }
     return options;
