@@ -8,7 +8,8 @@ namespace hitchview::algo {
 namespace {
 
 constexpr int kStride = 2;       // corners of the map
-constexpr int kPatch = 8;        // px of the camera, averaged
+constexpr int kPatch = 8;        // px of the camera, averaged over
+constexpr int kPatchStep = 2;    // every second one, across and down
 constexpr double kDark = 12;     // grey levels where noise rules
 constexpr double kBright = 243;  // and where the sensor is full
 constexpr double kPrior = 0.02;  // weight of "gain 1" against all shared corners together
@@ -25,38 +26,53 @@ double MeanAround(const CameraFrame& frame, float x, float y) {
         return -1;
     const SamplePlane luma = frame.LumaSamples();
     int sum = 0;
-    for (int r = 0; r < kPatch; ++r) {
-        const std::uint8_t* row = luma.row(y0 + r);
-        for (int c = x0; c < x0 + kPatch; ++c) sum += row[c * luma.step_bytes];
+    for (int r = 0; r < kPatch; r += kPatchStep) {
+        const std::uint8_t* row = luma.row(y0 + r) + x0 * luma.step_bytes;
+        for (int c = 0; c < kPatch; c += kPatchStep) sum += row[c * luma.step_bytes];
     }
-    return FullLuma(frame.range, static_cast<float>(sum) / (kPatch * kPatch));
+    constexpr int kRead = (kPatch / kPatchStep) * (kPatch / kPatchStep);
+    return FullLuma(frame.range, static_cast<float>(sum) / kRead);
+}
+
+struct SeenGrey {
+    int source;
+    double log_grey;
+};
+using SeenGreys = FixedVector<SeenGrey, 2 * kMaxCameras>;
+
+bool SharesCorner(const ComposedMap& map, int row, int col) {
+    int seeing = 0;
+    for (int s = 0; s < map.cameras(); ++s) seeing += map.corner(s, row, col).sees ? 1 : 0;
+    return seeing > 1;
+}
+
+/// What the cameras show at a corner; nothing where only one sees it.
+SeenGreys SeenAt(const ComposedMap& map, const RigFrames& frames, int row, int col) {
+    SeenGreys seen;
+    if (!SharesCorner(map, row, col)) return seen;
+    for (int s = 0; s < map.cameras(); ++s) {
+        const ComposedMap::Corner& corner = map.corner(s, row, col);
+        const CameraFrame& frame =
+            frames[map.unit_of(s)][static_cast<std::size_t>(map.camera_of(s))];
+        if (!corner.sees || !frame.present()) continue;
+        const double grey = MeanAround(frame, corner.x, corner.y);
+        if (grey < kDark || grey > kBright) continue;
+        seen.push_back({SourceIndex(map.unit_of(s), map.camera_of(s)), std::log(grey)});
+    }
+    return seen;
 }
 
 }  // namespace
 
 void ExposureGains::Collect(const ComposedMap& map, const RigFrames& frames, Table& sum,
                             Table& count) const {
-    struct Seen {
-        int source;
-        double grey;
-    };
-    FixedVector<Seen, kSources> seen;
     for (int row = 0; row <= map.block_rows(); row += kStride) {
         for (int col = 0; col <= map.block_cols(); col += kStride) {
-            seen.clear();
-            for (int s = 0; s < map.cameras(); ++s) {
-                const ComposedMap::Corner& corner = map.corner(s, row, col);
-                const CameraFrame& frame =
-                    frames[map.unit_of(s)][static_cast<std::size_t>(map.camera_of(s))];
-                if (!corner.sees || !frame.present()) continue;
-                const double grey = MeanAround(frame, corner.x, corner.y);
-                if (grey < kDark || grey > kBright) continue;
-                seen.push_back({SourceIndex(map.unit_of(s), map.camera_of(s)), grey});
-            }
-            for (const Seen& i : seen) {
-                for (const Seen& j : seen) {
+            const SeenGreys seen = SeenAt(map, frames, row, col);
+            for (const SeenGrey& i : seen) {
+                for (const SeenGrey& j : seen) {
                     if (i.source == j.source) continue;
-                    sum(i.source, j.source) += std::log(i.grey);
+                    sum(i.source, j.source) += i.log_grey;
                     count(i.source, j.source) += 1;
                 }
             }

@@ -31,18 +31,36 @@ int StepAt(const ComposedMap& map, int source, int row, int col) {
         1, 2 * map.block_px());
 }
 
+/// Sum of kN x kN values `step` apart, from the one at (x, y) on.
+template <int kN>
+int SumFrom(const SamplePlane& plane, int x, int y, int step) {
+    const std::uint8_t* row = plane.row(y) + x * plane.step_bytes;
+    const int across = step * plane.step_bytes;
+    const std::ptrdiff_t down = static_cast<std::ptrdiff_t>(step) * plane.stride_bytes;
+    int sum = 0;
+    for (int r = 0; r < kN; ++r, row += down) {
+        for (int c = 0; c < kN; ++c) sum += row[c * across];
+    }
+    return sum;
+}
+
 /// Mean of kN x kN values round (x, y), of the nearest ones where the square reaches outside.
 template <int kN>
 float MeanOf(const SamplePlane& plane, const Eigen::Vector2f& centre, int step) {
-    const float half = 0.5F * static_cast<float>((kN - 1) * step);
+    const int reach = (kN - 1) * step;
+    const float half = 0.5F * static_cast<float>(reach);
+    const int left = static_cast<int>(centre.x() - half + 0.5F);
+    const int top = static_cast<int>(centre.y() - half + 0.5F);
+    if (left >= 0 && top >= 0 && left + reach < plane.cols && top + reach < plane.rows)
+        return static_cast<float>(SumFrom<kN>(plane, left, top, step)) / (kN * kN);
     std::array<int, kN> bytes;
     for (int c = 0; c < kN; ++c) {
-        const int x = static_cast<int>(centre.x() - half + 0.5F) + c * step;
+        const int x = left + c * step;
         bytes[static_cast<std::size_t>(c)] = plane.step_bytes * std::clamp(x, 0, plane.cols - 1);
     }
     int sum = 0;
     for (int r = 0; r < kN; ++r) {
-        const int y = static_cast<int>(centre.y() - half + 0.5F) + r * step;
+        const int y = top + r * step;
         const std::uint8_t* row = plane.row(std::clamp(y, 0, plane.rows - 1));
         for (const int byte : bytes) sum += row[byte];
     }

@@ -11,19 +11,37 @@ float GreyPatch::Difference(const GreyPatch& other) const {
     return sum / static_cast<float>(cell.size());
 }
 
-GreyPatch ReadGreyPatch(const CameraFrame& frame, float gain, float x, float y) {
-    constexpr int kSide = GreyPatch::kCells * GreyPatch::kCellPx;
-    const int x0 = std::clamp(static_cast<int>(x) - kSide / 2, 0, frame.width_px - kSide);
-    const int y0 = std::clamp(static_cast<int>(y) - kSide / 2, 0, frame.height_px - kSide);
-    std::array<int, GreyPatch::kCells * GreyPatch::kCells> sum{};
-    const SamplePlane luma = frame.LumaSamples();
-    for (int r = 0; r < kSide; ++r) {
-        const std::uint8_t* row = luma.row(y0 + r) + x0 * luma.step_bytes;
+namespace {
+
+constexpr int kSide = GreyPatch::kCells * GreyPatch::kCellPx;
+using Sums = std::array<int, GreyPatch::kCells * GreyPatch::kCells>;
+
+/// Pixels lie kStep bytes apart.
+template <int kStep>
+Sums SumCells(const SamplePlane& luma, int x0, int y0) {
+    std::array<int, kSide> column{};
+    Sums sum{};
+    for (int cell_row = 0; cell_row < GreyPatch::kCells; ++cell_row) {
+        column.fill(0);
+        for (int r = 0; r < GreyPatch::kCellPx; ++r) {
+            const std::uint8_t* row = luma.row(y0 + cell_row * GreyPatch::kCellPx + r) + x0 * kStep;
+            for (int c = 0; c < kSide; ++c) column[static_cast<std::size_t>(c)] += row[c * kStep];
+        }
         for (int c = 0; c < kSide; ++c) {
-            const int cell = r / GreyPatch::kCellPx * GreyPatch::kCells + c / GreyPatch::kCellPx;
-            sum[static_cast<std::size_t>(cell)] += row[c * luma.step_bytes];
+            const int cell = cell_row * GreyPatch::kCells + c / GreyPatch::kCellPx;
+            sum[static_cast<std::size_t>(cell)] += column[static_cast<std::size_t>(c)];
         }
     }
+    return sum;
+}
+
+}  // namespace
+
+GreyPatch ReadGreyPatch(const CameraFrame& frame, float gain, float x, float y) {
+    const int x0 = std::clamp(static_cast<int>(x) - kSide / 2, 0, frame.width_px - kSide);
+    const int y0 = std::clamp(static_cast<int>(y) - kSide / 2, 0, frame.height_px - kSide);
+    const SamplePlane luma = frame.LumaSamples();
+    const Sums sum = luma.step_bytes == 1 ? SumCells<1>(luma, x0, y0) : SumCells<2>(luma, x0, y0);
     GreyPatch patch;
     constexpr float kPixels = GreyPatch::kCellPx * GreyPatch::kCellPx;
     for (std::size_t i = 0; i < sum.size(); ++i)

@@ -44,6 +44,8 @@ void SightTable::Fill(const UnitGeometry& geometry) {
         cameras_[i].width_px = geometry.camera_width_px(static_cast<int>(i));
         cameras_[i].height_px = geometry.camera_height_px(static_cast<int>(i));
         Crop(whole[i], cameras_[i]);
+        for (int col = 0; col + 1 < cameras_[i].cols; ++col)
+            seeing_[static_cast<std::size_t>((cameras_[i].first + col) % kCols)].set(i);
     }
 }
 
@@ -89,11 +91,12 @@ void SightTable::See(const Vector2d& view_px, const CameraMask& present,
     const int row = static_cast<int>(v);
     const auto s = static_cast<float>(u - view_col);
     const auto t = static_cast<float>(v - row);
+    const CameraMask& seeing = seeing_[static_cast<std::size_t>(view_col)];
+    if (seeing.none()) return;
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
+        if (!seeing[i]) continue;
         const Camera& camera = cameras_[i];
-        int col = view_col - camera.first;
-        if (col < 0) col += kCols;
-        if (col + 1 >= camera.cols) continue;
+        const int col = view_col - camera.first + (view_col < camera.first ? kCols : 0);
         const Node* top =
             camera.nodes.data() + static_cast<std::ptrdiff_t>(row) * camera.cols + col;
         const Node* bottom = top + camera.cols;

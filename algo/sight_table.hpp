@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "algo/unit_geometry.hpp"
@@ -49,6 +50,7 @@ class SightTable {
     int rows_above_;        ///< the view
     int rows_;
     std::vector<Camera> cameras_;
+    std::array<CameraMask, kCols> seeing_;  ///< from a column of nodes to the next
 };
 
 }  // namespace hitchview::algo

@@ -247,9 +247,10 @@ struct DrivenRing {
 };
 
 void MotionField(benchmark::State& state) {
+    constexpr double kOverlap_rad = 1.5;
     const DrivenRing ring;
-    const auto field =
-        std::make_unique<StabilizationMotionField>(ring.view, AnalysisOptions(ring.view).field);
+    const auto field = std::make_unique<StabilizationMotionField>(
+        ring.view, AnalysisOptions(ring.view, kOverlap_rad).field);
     IntraMotion motion;
     for (auto _ : state) field->Estimate(ring.features, ring.sights, motion);
     state.counters["inliers"] = motion.inliers;
