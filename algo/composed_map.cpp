@@ -39,6 +39,7 @@ ComposedMap::ComposedMap(const Projection& canvas,
       seams_(canvas, rows_, cols_, whole_.spacing_px(), seam),
       seam_cost_(rows_ * cols_, SeamCostOptionsOf(canvas)),
       shown_detail_(canvas, Vector2f::Zero()) {
+    shown_detail_.Clear();
     const auto corners = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_);
     for (const Unit unit : kUnits) {
         first_source_[unit] = static_cast<int>(sources_.size());
