@@ -11,15 +11,20 @@ using Eigen::Vector2d;
 /// How far a stabilised view may be tilted, so that more of it is seen above or below.
 constexpr double kTilt_rad = 0.2;
 
+int RowsOver(double length_px, double pitch_px) {
+    return std::max(1, static_cast<int>(std::ceil(length_px / pitch_px)));
+}
+
 }  // namespace
 
 SightTable::SightTable(const UnitGeometry& geometry)
     : ring_(geometry.view().IsRing()),
       pitch_px_(1.0 * geometry.view().width_px / kCols),
-      down_pitch_px_(pitch_px_ / kRowsToCol),
-      rows_above_(
-          static_cast<int>(std::ceil(kTilt_rad * geometry.view().focal_px / down_pitch_px_))),
-      rows_(static_cast<int>(geometry.view().height_px / down_pitch_px_) + 2 + 2 * rows_above_) {
+      edge_px_(geometry.SurfaceEdge_px()),
+      rows_to_edge_(RowsOver(edge_px_ + kTilt_rad * geometry.view().focal_px, pitch_px_)),
+      rows_(rows_to_edge_ + 1 +
+            RowsOver(geometry.view().height_px - edge_px_ + kTilt_rad * geometry.view().focal_px,
+                     pitch_px_)) {
     if (ring_) Fill(geometry);
 }
 
@@ -31,7 +36,7 @@ void SightTable::Fill(const UnitGeometry& geometry) {
     Vector2d pixel;
     for (int row = 0; row < rows_; ++row) {
         for (int col = 0; col < kCols; ++col) {
-            const Vector2d node(pitch_px_ * col, down_pitch_px_ * (row - rows_above_));
+            const Vector2d node(pitch_px_ * col, edge_px_ + pitch_px_ * (row - rows_to_edge_));
             const auto at = static_cast<std::size_t>(row * kCols + col);
             for (std::size_t i = 0; i < cameras; ++i) {
                 if (!geometry.Project(static_cast<int>(i), view.Ray(node), pixel)) continue;
@@ -85,7 +90,7 @@ void SightTable::See(const Vector2d& view_px, const CameraMask& present,
     }
     double u = view_px.x() / pitch_px_;
     if (u < 0 || u >= kCols) u -= kCols * std::floor(u / kCols);
-    const double v = view_px.y() / down_pitch_px_ + rows_above_;
+    const double v = (view_px.y() - edge_px_) / pitch_px_ + rows_to_edge_;
     if (!(v >= 0 && v < rows_ - 1)) return;
     const int view_col = static_cast<int>(u);
     const int row = static_cast<int>(v);

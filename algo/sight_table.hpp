@@ -22,9 +22,7 @@ class SightTable {
              UnitGeometry::Sights& sights) const;
 
  private:
-    static constexpr int kCols = 512;     ///< of nodes all round, whatever the view's size
-    static constexpr int kRowsToCol = 4;  ///< nodes lie closer down than across: the alignment
-                                          ///< surface has an edge at the horizon
+    static constexpr int kCols = 512;  ///< of nodes all round, whatever the view's size
 
     struct Node {
         float x_px = 0;
@@ -45,9 +43,9 @@ class SightTable {
     [[nodiscard]] bool SeesColumn(const std::vector<Node>& whole, int col) const;
 
     bool ring_;
-    double pitch_px_;       ///< of the nodes across
-    double down_pitch_px_;  ///< and down
-    int rows_above_;        ///< the view
+    double pitch_px_;   ///< of the nodes
+    double edge_px_;    ///< row of the view where the alignment surface has an edge
+    int rows_to_edge_;  ///< so that nodes lie on it
     int rows_;
     std::vector<Camera> cameras_;
     std::array<CameraMask, kCols> seeing_;  ///< from a column of nodes to the next

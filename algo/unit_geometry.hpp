@@ -95,6 +95,11 @@ class UnitGeometry {
                                            const Eigen::Vector3d& ray) const {
         return (surface_.Hit(ray) - origin_m).norm();
     }
+    /// Row of a ring's view where ground and cylinder of the alignment surface meet.
+    [[nodiscard]] double SurfaceEdge_px() const {
+        return view_.horizon_y_px +
+               view_.focal_px * (surface_.viewpoint_m - surface_.ground_m) / surface_.radius_m;
+    }
     /// Ray of a ring's view in which a camera at `origin_m` shows what lies in `direction`.
     [[nodiscard]] Eigen::Vector3d RayToward(const Eigen::Vector3d& origin_m,
                                             const Eigen::Vector3d& direction) const {
