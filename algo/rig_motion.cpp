@@ -82,7 +82,11 @@ void RigMotionEstimator::Reset() {
         if (analysis_[unit]) analysis_[unit]->Reset();
     }
     if (articulation_) articulation_->Reset();
-    for (const Overlap overlap : kOverlaps) frames_unmatched_[overlap] = kCoastFrames;
+    for (const Overlap overlap : kOverlaps) {
+        frames_unmatched_[overlap] = kCoastFrames;
+        seams_[overlap] = SeamState::kNoOverlap;
+        matches_[overlap] = 0;
+    }
 }
 
 bool RigMotionEstimator::Prime(const RigFrames& frames, TaskRunner& runner) {
@@ -95,7 +99,7 @@ bool RigMotionEstimator::Prime(const RigFrames& frames, TaskRunner& runner) {
 void RigMotionEstimator::Estimate(const RigFrames& frames, const MatchGuess& guess,
                                   TaskRunner& runner, RigMotion& motion, RigParallax* parallax) {
     Analyse(frames, runner, motion);
-    if (placement_ && stitch_) MatchUnits(guess, runner, motion, parallax);
+    if (placement_ && stitch_) FollowTrailer(guess, runner, motion, parallax);
 }
 
 void RigMotionEstimator::Analyse(const RigFrames& frames, TaskRunner& runner, RigMotion& motion) {
@@ -106,14 +110,25 @@ void RigMotionEstimator::Analyse(const RigFrames& frames, TaskRunner& runner, Ri
     });
 }
 
-void RigMotionEstimator::MatchUnits(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion,
-                                    RigParallax* parallax) {
+void RigMotionEstimator::FollowTrailer(const MatchGuess& guess, TaskRunner& runner,
+                                       RigMotion& motion, RigParallax* parallax) {
     placement_->Predict(motion.intra);
     for (const Overlap overlap : kOverlaps) {
         motion.inter[overlap].clear();
         motion.dense[overlap].clear();
         if (parallax != nullptr) (*parallax)[overlap].clear();
     }
+    motion.matched = guess.match;
+    if (guess.match) MatchUnits(guess, runner, motion, parallax);
+    motion.seams = seams_;
+    motion.matches = matches_;
+    motion.M_tractor_trailer = placement_->M_tractor_trailer();
+    motion.placed = placement_->acquired();
+    if (articulation_) motion.articulation = articulation_->Step(motion.intra, motion.dense);
+}
+
+void RigMotionEstimator::MatchUnits(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion,
+                                    RigParallax* parallax) {
     const bool lost = !placement_->acquired() || LongUnmatched();
     if (lost && matched_ % kAcquireEvery == 0) {
         AcquireTrailer(motion);
@@ -121,9 +136,6 @@ void RigMotionEstimator::MatchUnits(const MatchGuess& guess, TaskRunner& runner,
     }
     if (placement_->acquired()) Guide(guess, runner, motion, parallax);
     UpdateSeams(motion);
-    motion.M_tractor_trailer = placement_->M_tractor_trailer();
-    motion.placed = placement_->acquired();
-    if (articulation_) motion.articulation = articulation_->Step(motion.intra, motion.dense);
     ++matched_;
 }
 
@@ -236,23 +248,23 @@ PerUnit<cv::Rect> RigMotionEstimator::SearchedRegions(Overlap overlap) const {
     return OverlapRegions(rings, placement_->M_tractor_trailer(), overlap, kSearched_rad);
 }
 
-void RigMotionEstimator::UpdateSeams(RigMotion& motion) {
+void RigMotionEstimator::UpdateSeams(const RigMotion& motion) {
     for (const Overlap overlap : kOverlaps) {
         const int inliers = placement_->inliers()[overlap];
-        motion.matches[overlap] = inliers;
+        matches_[overlap] = inliers;
         int& unmatched = frames_unmatched_[overlap];
         const InterFeatures& pairs =
             canvas_.IsRing() ? motion.dense[overlap] : motion.inter[overlap];
         const bool locked = inliers >= kLockedInliers &&
                             inliers >= kLockedShare * static_cast<double>(pairs.size());
         unmatched = locked ? 0 : std::min(unmatched + 1, kCoastFrames);
+        SeamState& seam = seams_[overlap];
         if (unmatched == 0) {
-            motion.seams[overlap] = SeamState::kLocked;
+            seam = SeamState::kLocked;
         } else if (!placement_->acquired() || motion.candidates[overlap] < kFewestCandidates) {
-            motion.seams[overlap] = SeamState::kNoOverlap;
+            seam = SeamState::kNoOverlap;
         } else {
-            motion.seams[overlap] =
-                unmatched < kCoastFrames ? SeamState::kCoast : SeamState::kReacquire;
+            seam = unmatched < kCoastFrames ? SeamState::kCoast : SeamState::kReacquire;
         }
     }
 }

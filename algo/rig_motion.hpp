@@ -19,7 +19,8 @@ struct RigMotion {
     PerOverlap<InterFeatures> inter;  ///< px of the views
     PerOverlap<InterFeatures> dense;  ///< likewise, spread evenly: for the stitching field
     Eigen::Matrix3d M_tractor_trailer = Eigen::Matrix3d::Identity();
-    bool placed = false;  ///< false: M_tractor_trailer means nothing
+    bool placed = false;   ///< false: M_tractor_trailer means nothing
+    bool matched = false;  ///< false: there are no pairs, the placement is predicted
     PerOverlap<SeamState> seams{{SeamState::kNoOverlap, SeamState::kNoOverlap}};
     PerOverlap<int> matches;
     PerOverlap<int> candidates;
@@ -32,6 +33,7 @@ using RigParallax = PerOverlap<ParallaxSamples>;
 
 /// Where both views are thought to lie on the canvas when features are matched between them.
 struct MatchGuess {
+    bool match = true;  ///< false: they are not, to save time; the seams' states stay as they were
     Eigen::Matrix3d M_canvas_tractor = Eigen::Matrix3d::Identity();
     /// On the canvas: from where the matched placement puts the trailer to where it is shown.
     Eigen::Matrix3d M_shown_placed = Eigen::Matrix3d::Identity();
@@ -65,6 +67,8 @@ class RigMotionEstimator {
 
  private:
     void Analyse(const RigFrames& frames, TaskRunner& runner, RigMotion& motion);
+    void FollowTrailer(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion,
+                       RigParallax* parallax);
     void MatchUnits(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion,
                     RigParallax* parallax);
     bool AcquireTrailer(RigMotion& motion);
@@ -78,7 +82,7 @@ class RigMotionEstimator {
     [[nodiscard]] InterFeature ToViews(const ViewPair& pair) const;
     void LayLattice();
     void ToViews(const ViewPairs& pairs, InterFeatures& features) const;
-    void UpdateSeams(RigMotion& motion);
+    void UpdateSeams(const RigMotion& motion);
     [[nodiscard]] const Projection& view(Unit unit) const {
         return unit == Unit::kTractor ? tractor_view_ : *trailer_view_;
     }
@@ -93,6 +97,8 @@ class RigMotionEstimator {
     PerOverlap<std::unique_ptr<OverlapParallax>> parallax_;  // ring only
     std::unique_ptr<ArticulationEstimator> articulation_;    // ring only
     PerOverlap<int> frames_unmatched_;
+    PerOverlap<SeamState> seams_{{SeamState::kNoOverlap, SeamState::kNoOverlap}};
+    PerOverlap<int> matches_;
     std::int64_t matched_ = 0;  // frame sets
     int searches_ = 0;          // for the trailer
     PerOverlap<ViewPairs> view_pairs_;

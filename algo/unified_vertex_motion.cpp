@@ -88,9 +88,16 @@ bool UnifiedVertexMotion::Prime(const RigFrames& frames, TaskRunner& runner) {
 const Composition* UnifiedVertexMotion::Step(const RigFrames& frames, TaskRunner& runner) {
     UpdateGuess();
     estimator_.Estimate(frames, guess_, runner, At(analysed_), ParallaxAt(analysed_));
+    guess_.match = true;
     ++analysed_;
     if (analysed_ - emitted_ <= options_.lookahead_frames) return nullptr;
     return Emit(emitted_++, runner);
+}
+
+bool UnifiedVertexMotion::LightenNextStep() {
+    const bool matched = analysed_ > 0 && At(analysed_ - 1).matched;
+    guess_.match = !(has_trailer() && matched);
+    return !guess_.match;
 }
 
 /// A feature is expected where the frame emitted last shows it.
@@ -121,7 +128,7 @@ const Composition* UnifiedVertexMotion::Emit(std::int64_t index, TaskRunner& run
     Compose(record);
     if (has_trailer() && record.placed) {
         UpdateStitching(record, M_canvas_early);
-        if (detail_) UpdateDetail(*ParallaxAt(index), runner);
+        if (detail_ && record.matched) UpdateDetail(*ParallaxAt(index), runner);
     }
     composition_.discrepancy = stitching_.discrepancy();
     return &composition_;

@@ -33,6 +33,8 @@ class UnifiedVertexMotion final : public VertexMotion {
     /// steps ago; empty while there is none yet.
     const Composition* Step(const RigFrames& frames, TaskRunner& runner) override;
     /// After the last set: the compositions that the lookahead still holds back, one per call.
+    /// Not twice in a row: matches are never missed for long.
+    bool LightenNextStep() override;
     const Composition* Flush() override;
     /// Forgets everything that crosses frames; the layout stays.
     void Reset() override;

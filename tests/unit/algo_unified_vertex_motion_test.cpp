@@ -203,5 +203,33 @@ TEST_F(UnifiedVertexMotionTest, AfterAResetTheSameFramesGiveTheSameCompositions)
     }
 }
 
+TEST_F(UnifiedVertexMotionTest, AStepMayLeaveOutMatchingButNotTwiceInARow) {
+    const auto sut = Motion();
+    const auto full = Motion();
+    ASSERT_TRUE(Prime(*sut));
+    ASSERT_TRUE(Prime(*full));
+    EXPECT_FALSE(sut->LightenNextStep()) << "nothing was matched yet";
+    int lightened = 0;
+    for (const Corners& corners : drive_) {
+        const bool light = sut->LightenNextStep();
+        lightened += light ? 1 : 0;
+        const Composition& c = *Step(*sut, corners);
+        const Composition& expected = *Step(*full, corners);
+        EXPECT_EQ(c.seams[Overlap::kRight], SeamState::kLocked);
+        const Vector2d at = kInTheOverlap - Vector2d(250, 64);
+        const Vector2d shown = (c.M_canvas_view[Unit::kTrailer] * at.homogeneous()).hnormalized();
+        const Vector2d wanted =
+            (expected.M_canvas_view[Unit::kTrailer] * at.homogeneous()).hnormalized();
+        EXPECT_LT((shown - wanted).norm(), 1.0) << "the placement is predicted";
+    }
+    EXPECT_EQ(lightened, kFrames / 2);
+}
+
+TEST_F(UnifiedVertexMotionTest, OneUnitAloneHasNothingToLeaveOut) {
+    const auto sut = Motion({}, false);
+    Step(*sut, drive_[0]);
+    EXPECT_FALSE(sut->LightenNextStep());
+}
+
 }  // namespace
 }  // namespace hitchview::algo
