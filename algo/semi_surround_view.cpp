@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 
 namespace hitchview::algo {
@@ -35,15 +36,15 @@ int ReductionFor(const UnitGeometry& geometry, double scale) {
     return reduction;
 }
 
-/// Means of kSide x kSide samples, kStep bytes apart. Constants, so that the compiler makes vector
-/// code of it.
+/// Means of kSide x kSide samples, kStep bytes apart, for the used part. Constants, so that the
+/// compiler makes vector code of it.
 template <int kSide, int kStep>
-void ReduceRows(const SamplePlane& plane, cv::Mat1b& reduced) {
+void ReduceRows(const SamplePlane& plane, const cv::Rect& used, cv::Mat1b& reduced) {
     constexpr int kArea = kSide * kSide;
-    for (int y = 0; y < reduced.rows; ++y) {
-        const std::uint8_t* in = plane.row(y * kSide);
-        std::uint8_t* out = reduced[y];
-        for (int x = 0; x < reduced.cols; ++x) {
+    for (int y = used.y; y < used.br().y; ++y) {
+        const std::uint8_t* in = plane.row(y * kSide) + used.x * kSide * kStep;
+        std::uint8_t* out = reduced[y] + used.x;
+        for (int x = 0; x < used.width; ++x) {
             unsigned sum = kArea / 2;
             for (int v = 0; v < kSide; ++v) {
                 const std::uint8_t* row =
@@ -56,11 +57,11 @@ void ReduceRows(const SamplePlane& plane, cv::Mat1b& reduced) {
 }
 
 template <int kSide>
-void ReduceBy(const SamplePlane& plane, cv::Mat1b& reduced) {
+void ReduceBy(const SamplePlane& plane, const cv::Rect& used, cv::Mat1b& reduced) {
     if (plane.step_bytes == 1) {
-        ReduceRows<kSide, 1>(plane, reduced);
+        ReduceRows<kSide, 1>(plane, used, reduced);
     } else {
-        ReduceRows<kSide, 2>(plane, reduced);
+        ReduceRows<kSide, 2>(plane, used, reduced);
     }
 }
 
@@ -78,6 +79,8 @@ SemiSurroundView::SemiSurroundView(const UnitGeometry& geometry, double scale)
     }
     BuildMap(geometry);
     MaskJoints();
+    FindRuns();
+    FindUsed();
     mask_ = calibrated_mask_.clone();
 }
 
@@ -123,49 +126,96 @@ void SemiSurroundView::MaskJoints() {
     calibrated_mask_ = (lowest == highest) & (camera_ != kNoCamera);
 }
 
+void SemiSurroundView::FindRuns() {
+    for (int y = 0; y < camera_.rows; ++y) {
+        for (int x = 0; x < camera_.cols;) {
+            const Run run = RunFrom(y, x);
+            if (run.camera != kNoCamera) runs_.push_back(run);
+            x = run.end;
+        }
+    }
+}
+
+SemiSurroundView::Run SemiSurroundView::RunFrom(int y, int first) const {
+    const std::uint8_t* camera = camera_[y];
+    const Source* source = sources_.data() + static_cast<std::ptrdiff_t>(y) * camera_.cols;
+    constexpr int kOne = 1 << kFractionBits;
+    Run run{y, first, first, camera[first], true};
+    for (; run.end < camera_.cols && camera[run.end] == run.camera; ++run.end) {
+        const Source& at = source[run.end];
+        const bool whole = at.x % kOne == 0 && at.y % kOne == 0;
+        const bool beside = run.end == first ||
+                            (at.x == source[run.end - 1].x + kOne && at.y == source[run.end - 1].y);
+        run.copied = run.copied && whole && beside;
+    }
+    return run;
+}
+
+/// What the runs read, with the right and lower neighbours.
+void SemiSurroundView::FindUsed() {
+    for (const Run& run : runs_) {
+        cv::Rect& used = used_[static_cast<std::size_t>(run.camera)];
+        for (int x = run.first; x < run.end; ++x) {
+            const Source& at = sources_[static_cast<std::size_t>(run.y * camera_.cols + x)];
+            used |= cv::Rect(at.x >> kFractionBits, at.y >> kFractionBits, 2, 2);
+        }
+    }
+}
+
 void SemiSurroundView::Compose(const UnitFrames& frames, cv::Mat1b& view) {
     for (int i = 0; i < cameras_; ++i) {
         const CameraFrame& frame = frames[static_cast<std::size_t>(i)];
-        if (frame.present()) Reduce(frame, reduced_[static_cast<std::size_t>(i)]);
+        if (frame.present()) Reduce(frame, i);
     }
-    constexpr int kOne = 1 << kFractionBits;
-    for (int y = 0; y < camera_.rows; ++y) {
-        const std::uint8_t* camera = camera_[y];
-        const Source* source = sources_.data() + static_cast<std::ptrdiff_t>(y) * camera_.cols;
-        std::uint8_t* out = view[y];
-        for (int x = 0; x < camera_.cols; ++x) {
-            if (camera[x] == kNoCamera || !frames[camera[x]].present()) {
-                out[x] = 0;
-                continue;
-            }
-            const cv::Mat1b& from = reduced_[camera[x]];
-            const int fx = source[x].x & (kOne - 1);
-            const int fy = source[x].y & (kOne - 1);
-            const std::uint8_t* a =
-                from[source[x].y >> kFractionBits] + (source[x].x >> kFractionBits);
-            const std::uint8_t* b = a + from.step1();
-            const int top = a[0] * (kOne - fx) + a[1] * fx;
-            const int bottom = b[0] * (kOne - fx) + b[1] * fx;
-            out[x] = static_cast<std::uint8_t>(
-                (top * (kOne - fy) + bottom * fy + kOne * kOne / 2) >> (2 * kFractionBits));
-        }
+    for (int y = 0; y < view.rows; ++y)
+        std::memset(view[y], 0, static_cast<std::size_t>(view.cols));
+    for (const Run& run : runs_) {
+        if (frames[static_cast<std::size_t>(run.camera)].present()) ComposeRun(run, view);
     }
     UpdateMask(frames);
 }
 
+void SemiSurroundView::ComposeRun(const Run& run, cv::Mat1b& view) const {
+    const cv::Mat1b& from = reduced_[static_cast<std::size_t>(run.camera)];
+    const Source* source = sources_.data() + static_cast<std::ptrdiff_t>(run.y) * camera_.cols;
+    std::uint8_t* out = view[run.y];
+    const auto pixel = [&](const Source& at) {
+        return from[at.y >> kFractionBits] + (at.x >> kFractionBits);
+    };
+    if (run.copied) {
+        std::memcpy(out + run.first, pixel(source[run.first]),
+                    static_cast<std::size_t>(run.end - run.first));
+        return;
+    }
+    constexpr int kOne = 1 << kFractionBits;
+    const auto step = static_cast<std::ptrdiff_t>(from.step1());
+    for (int x = run.first; x < run.end; ++x) {
+        const int fx = source[x].x & (kOne - 1);
+        const int fy = source[x].y & (kOne - 1);
+        const std::uint8_t* a = pixel(source[x]);
+        const std::uint8_t* b = a + step;
+        const int top = a[0] * (kOne - fx) + a[1] * fx;
+        const int bottom = b[0] * (kOne - fx) + b[1] * fx;
+        out[x] = static_cast<std::uint8_t>((top * (kOne - fy) + bottom * fy + kOne * kOne / 2) >>
+                                           (2 * kFractionBits));
+    }
+}
+
 /// A limited range is left as it is: what is tracked and matched are differences, and these come
 /// out one seventh smaller.
-void SemiSurroundView::Reduce(const CameraFrame& frame, cv::Mat1b& reduced) const {
+void SemiSurroundView::Reduce(const CameraFrame& frame, int camera) {
     const SamplePlane luma = frame.LumaSamples();
+    const cv::Rect& used = used_[static_cast<std::size_t>(camera)];
+    cv::Mat1b& reduced = reduced_[static_cast<std::size_t>(camera)];
     switch (reduction_) {
         case 1:
-            return ReduceBy<1>(luma, reduced);
+            return ReduceBy<1>(luma, used, reduced);
         case 2:
-            return ReduceBy<2>(luma, reduced);
+            return ReduceBy<2>(luma, used, reduced);
         case 4:
-            return ReduceBy<4>(luma, reduced);
+            return ReduceBy<4>(luma, used, reduced);
         default:
-            return ReduceBy<8>(luma, reduced);
+            return ReduceBy<8>(luma, used, reduced);
     }
 }
 

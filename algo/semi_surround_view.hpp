@@ -47,9 +47,22 @@ class SemiSurroundView {
         std::int16_t y = 0;
     };
 
+    /// Pixels of one row of the view that come from one camera.
+    struct Run {
+        int y;
+        int first;
+        int end;
+        int camera;
+        bool copied;  ///< from as many pixels beside each other
+    };
+
     void BuildMap(const UnitGeometry& geometry);
     void MaskJoints();
-    void Reduce(const CameraFrame& frame, cv::Mat1b& reduced) const;
+    void FindRuns();
+    [[nodiscard]] Run RunFrom(int y, int first) const;
+    void FindUsed();
+    void Reduce(const CameraFrame& frame, int camera);
+    void ComposeRun(const Run& run, cv::Mat1b& view) const;
     void UpdateMask(const UnitFrames& frames);
 
     int cameras_;
@@ -58,6 +71,8 @@ class SemiSurroundView {
     std::array<cv::Mat1b, kMaxCameras> reduced_;
     cv::Mat_<std::uint8_t> camera_;
     std::vector<Source> sources_;
+    std::vector<Run> runs_;
+    std::array<cv::Rect, kMaxCameras> used_;  ///< part of each reduced picture
     cv::Mat1b calibrated_mask_;
     cv::Mat1b mask_;
     unsigned masked_cameras_ = ~0U;

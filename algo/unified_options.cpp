@@ -10,7 +10,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 /// A narrow overlap needs pixels: a patch that is described is 36 px wide.
 double AnalysisScale(const Projection& view, double overlap_rad) {
-    if (!view.IsRing()) return view.width_px > 960 ? 0.5 : 1.0;
+    if (!view.IsRing()) return view.width_px > 720 ? 0.5 : 1.0;
     const double wanted_px = overlap_rad < 20 * kDegree ? 2048 : 1024;
     return std::min(1.0, wanted_px / view.width_px);
 }
