@@ -41,6 +41,13 @@ std::string Stages(const json& stages) {
     return table;
 }
 
+std::string Memory(const json& memory) {
+    std::string table = "\nmemory, taken at the start     MiB\n";
+    for (const auto& [name, bytes] : memory.items())
+        table += Line("%-26s %8.1f\n", name.c_str(), bytes.get<double>() / (1 << 20));
+    return table;
+}
+
 std::string Scaling(const json& scaling) {
     std::string table = "\ncameras canvas workers  core ms  interval ms\n";
     for (const json& row : scaling) {
@@ -55,6 +62,7 @@ std::string Scaling(const json& scaling) {
 
 std::string BenchTable(const json& figures) {
     std::string table = WholeFrame(figures.at("whole_frame")) + Stages(figures.at("stages"));
+    table += Memory(figures.at("memory_bytes"));
     if (!figures.at("scaling").empty()) table += Scaling(figures.at("scaling"));
     return table;
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/bench_baselines.hpp"
+#include "app/bench_memory.hpp"
 #include "app/bench_run.hpp"
 #include "app/bench_table.hpp"
 #include "app/report.hpp"
@@ -24,6 +25,8 @@ constexpr int kStopped = 1;
 constexpr int kMachineFailed = 3;
 constexpr hal::Instant kPeriod{33'333'333};
 constexpr int kScalingFrames = 40;
+/// In a run without lookahead: one is worked on, one waits, and four are being filled.
+constexpr int kHeldSets = 6;
 
 int Fail(const std::string& why) {
     std::fprintf(stderr, "%s\n", why.c_str());
@@ -100,6 +103,21 @@ class Bench {
         return stages;
     }
 
+    /// Bytes.
+    json Memory() const {
+        hal::FrameFormat frame = rig_.format();
+        frame.pixel_format = options_.format;
+        json parts;
+        std::size_t sum = 0;
+        for (const MemoryPart& part : MemoryOf(
+                 Geometry(options_.canvas_width_px, SimulatedRig::kCameras), frame, kHeldSets)) {
+            parts[part.name] = part.bytes;
+            sum += part.bytes;
+        }
+        parts["all"] = sum;
+        return parts;
+    }
+
     json Scaling(const std::atomic<bool>& stop) {
         json rows = json::array();
         for (int cameras = 1; cameras <= SimulatedRig::kCameras && !stop; ++cameras)
@@ -155,6 +173,7 @@ int BenchVerb(const BenchOptions& options, const std::atomic<bool>& stop) {
     figures["whole_frame"] = bench.WholeFrame();
     if (stop) return kStopped;
     figures["stages"] = bench.Stages(figures["whole_frame"]);
+    figures["memory_bytes"] = bench.Memory();
     figures["scaling"] = options.quick ? json::array() : bench.Scaling(stop);
     if (stop) return kStopped;
     std::fputs(BenchTable(figures).c_str(), stdout);
