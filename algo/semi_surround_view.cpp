@@ -104,12 +104,13 @@ void SemiSurroundView::BuildMap(const UnitGeometry& geometry) {
             if (best == sights.end() || best->weight <= 0) continue;
             const Eigen::Vector2d pixel = (best->pixel.array() + 0.5) / reduction_ - 0.5;
             const cv::Mat1b& reduced = reduced_[static_cast<std::size_t>(best->camera)];
-            if (pixel.minCoeff() < 0 || pixel.x() > reduced.cols - 1.01 ||
-                pixel.y() > reduced.rows - 1.01) {
+            // So that a right and a lower neighbour exist, also after rounding.
+            constexpr double kUnit = 1 << kFractionBits;
+            if (pixel.minCoeff() < 0 || pixel.x() > reduced.cols - 1 - 1 / kUnit ||
+                pixel.y() > reduced.rows - 1 - 1 / kUnit) {
                 continue;
             }
             camera_(y, x) = static_cast<std::uint8_t>(best->camera);
-            constexpr double kUnit = 1 << kFractionBits;
             sources_[static_cast<std::size_t>(y * camera_.cols + x)] = {
                 static_cast<std::int16_t>(std::lround(pixel.x() * kUnit)),
                 static_cast<std::int16_t>(std::lround(pixel.y() * kUnit))};
