@@ -87,7 +87,10 @@ class BenchDrive {
         const double start_ms = CpuMs(CLOCK_PROCESS_CPUTIME_ID);
         {
             PanoramaPublisher publisher = OpenPublisher(display, false);
-            for (int i = 0; i < options_.frames; ++i) Publish(publisher, Next());
+            const int tenth = options_.frames / 10;
+            const double first_ms = PublishSets(publisher, tenth);
+            PublishSets(publisher, options_.frames - 2 * tenth);
+            figures.growth = PublishSets(publisher, tenth) / first_ms;
             publisher.Finish();
         }
         const double all_ms = CpuMs(CLOCK_PROCESS_CPUTIME_ID) - start_ms;
@@ -122,6 +125,13 @@ class BenchDrive {
                                  {.jpeg = {.budget_bytes = kMaxJpegBytes},
                                   .calibration_id = {},
                                   .drop_when_late = drop_when_late});
+    }
+
+    /// CPU time that passed meanwhile.
+    double PublishSets(PanoramaPublisher& publisher, int count) {
+        const double start_ms = CpuMs(CLOCK_PROCESS_CPUTIME_ID);
+        for (int i = 0; i < count; ++i) Publish(publisher, Next());
+        return CpuMs(CLOCK_PROCESS_CPUTIME_ID) - start_ms;
     }
 
     void Publish(PanoramaPublisher& publisher, FrameSet&& set) {

@@ -14,6 +14,7 @@ struct BenchFigures {
     double core_ms = 0;      ///< CPU time of a frame set, summed over threads, without publishing
     double jpeg_ms = 0;      ///< CPU time of compressing and publishing it
     double jpeg_bytes = 0;   ///< median
+    double growth = 0;       ///< CPU time of the last tenth of the sets to that of the first
     double interval_ms = 0;  ///< median from one panorama to the next, as fast as it goes
     double latency_p50_ms = 0;  ///< paced: from the frame set's moment to the compressed panorama
     double latency_p99_ms = 0;

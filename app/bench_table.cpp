@@ -26,6 +26,8 @@ std::string WholeFrame(const json& whole) {
                 At(whole, "jpeg_ms"), At(whole, "jpeg_bytes")) +
            Line("from one panorama to the next, as fast as it goes %4.1f ms\n",
                 At(whole, "interval_ms")) +
+           Line("last tenth of the frame sets to the first, CPU      %5.2f\n",
+                At(whole, "growth")) +
            Line("captured to published at 30 Hz: p50 %5.1f ms, p99 %5.1f ms, %d dropped\n",
                 At(whole, "p50_ms"), At(whole, "p99_ms"), whole.at("dropped").get<int>()) +
            Line("rendering alone, one thread: %.2f of cv::remap\n",

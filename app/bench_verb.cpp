@@ -69,6 +69,7 @@ class Bench {
             rounds["core_ms_without_jpeg"].push_back(figures.core_ms);
             rounds["jpeg_ms"].push_back(figures.jpeg_ms);
             rounds["jpeg_bytes"].push_back(figures.jpeg_bytes);
+            rounds["growth"].push_back(figures.growth);
             rounds["interval_ms"].push_back(figures.interval_ms);
             rounds["p50_ms"].push_back(figures.latency_p50_ms);
             rounds["p99_ms"].push_back(figures.latency_p99_ms);
