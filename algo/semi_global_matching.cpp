@@ -5,20 +5,159 @@
 #include <cstdlib>
 #include <limits>
 
+#include "algo/multiversion.hpp"
+
 namespace hitchview::algo {
 namespace {
 
+using Answer = SemiGlobalMatching::Answer;
 using Cost = SemiGlobalMatching::Cost;
 using Sum = SemiGlobalMatching::Sum;
 
+/// Labels are handled in blocks of so many.
+constexpr int kBlock = 32;
 /// Dearer than any path, which costs at most kDearest and a jump; one step more does not overflow.
 constexpr Cost kNever = 240;
+constexpr Sum kNeverSum = std::numeric_limits<Sum>::max();
 
-/// Of the labels from `first` to before `end`.
-Sum Least(const Sum* sum, int first, int end) {
-    Sum least = std::numeric_limits<Sum>::max();
-    for (int k = first; k < end; ++k) least = std::min(least, sum[k]);
+constexpr int kPaths = 4;  // in each of two directions
+
+constexpr int PathStride(int labels) {
+    return labels + 3;
+}
+
+/// The way to a node from the one before on a path.
+struct Way {
+    const Cost* before;  ///< costs of the labels there
+    Cost least;          ///< of them
+    Cost jump;           ///< to any label here
+};
+
+/// A row of nodes; each pointer is to the node at its left end.
+struct Line {
+    const Cost* costs;
+    Sum* sums;
+    const std::uint8_t* grey;
+    const std::uint8_t* grey_before;  ///< of the row that was swept before
+    Cost* paths;  ///< kPaths of each node: the labels between two that nobody takes, and their
+                  ///< minimum; nodes beyond the border have costs of 0
+    const Cost* paths_before;
+};
+
+/// What is alike at all nodes.
+struct Terms {
+    int cols;
+    int labels;
+    int padded;
+    int down;  ///< 1: from the top and the left, -1: from the bottom and the right
+    Cost step;
+    const Cost* jumps;  ///< by difference of grey
+};
+
+/// Cost of label `k` by way of the node before, less the minimum there, which only keeps the
+/// numbers small.
+inline Cost Extended(const Way& way, Cost own, Cost step, int k) {
+    const auto beside = static_cast<Cost>(std::min(way.before[k - 1], way.before[k + 1]) + step);
+    const Cost cheapest = std::min(std::min(way.before[k], beside), way.jump);
+    return static_cast<Cost>(own + cheapest - way.least);
+}
+
+/// Extends two paths to a node and adds them to its sums. Gives the least cost of each.
+HV_MULTIVERSION
+std::array<Cost, 2> ExtendTwo(const Cost* __restrict cost, const Way& a, const Way& b, Cost step,
+                              int labels, Cost* __restrict to_a, Cost* __restrict to_b,
+                              Sum* __restrict sum) {
+    const Way from_a = a;
+    const Way from_b = b;
+    Cost least_a = kNever;
+    Cost least_b = kNever;
+    for (int k = 0; k < labels; ++k) {
+        const Cost at_a = Extended(from_a, cost[k], step, k);
+        const Cost at_b = Extended(from_b, cost[k], step, k);
+        to_a[k] = at_a;
+        to_b[k] = at_b;
+        least_a = std::min(least_a, at_a);
+        least_b = std::min(least_b, at_b);
+        sum[k] = static_cast<Sum>(sum[k] + at_a + at_b);
+    }
+    return {least_a, least_b};
+}
+
+void VisitNode(const Line& line, const Terms& terms, int col) {
+    const int stride = PathStride(terms.labels);
+    const auto way = [&](const Cost* paths, const std::uint8_t* grey, int from, int path) {
+        const Cost* before = paths + (from * kPaths + path) * stride;
+        const Cost least = before[terms.labels + 1];
+        const int edge = std::abs(int{line.grey[col]} - int{grey[from]});
+        return Way{before, least, static_cast<Cost>(least + terms.jumps[edge])};
+    };
+    const auto above = [&](int from, int path) {
+        return way(line.paths_before, line.grey_before, from, path);
+    };
+    const Cost* cost = line.costs + col * terms.padded;
+    Sum* sum = line.sums + col * terms.padded;
+    Cost* to = line.paths + col * kPaths * stride;
+    if (terms.down > 0) std::fill_n(sum, terms.labels, Sum{0});
+    const auto first = ExtendTwo(cost, way(line.paths, line.grey, col - terms.down, 0),
+                                 above(col - 1, 1), terms.step, terms.labels, to, to + stride, sum);
+    const auto second = ExtendTwo(cost, above(col, 2), above(col + 1, 3), terms.step, terms.labels,
+                                  to + 2 * stride, to + 3 * stride, sum);
+    for (const Cost least : {first[0], first[1], second[0], second[1]}) {
+        to[-1] = to[terms.labels] = kNever;
+        to[terms.labels + 1] = least;
+        to += stride;
+    }
+}
+
+/// Paths from the row before and from one side.
+void SweepRow(const Line& line, const Terms& terms) {
+    for (int j = 0; j < terms.cols; ++j)
+        VisitNode(line, terms, terms.down > 0 ? j : terms.cols - 1 - j);
+}
+
+inline Sum Least(const Sum* sum, int labels) {
+    Sum least = kNeverSum;
+    for (int k = 0; k < labels; ++k) least = std::min(least, sum[k]);
     return least;
+}
+
+/// The first of the labels with this sum, which is there.
+inline int Find(const Sum* sum, Sum wanted) {
+    int block = 0;
+    while (Least(sum + block, kBlock) != wanted) block += kBlock;
+    while (sum[block] != wanted) ++block;
+    return block;
+}
+
+/// Of the minimum between labels; the best is at neither end.
+inline float FractionAt(const Sum* best) {
+    const auto left = static_cast<float>(best[-1] - *best);
+    const auto right = static_cast<float>(best[1] - *best);
+    return left + right > 0 ? 0.5F * (left - right) / (left + right) : 0;
+}
+
+/// The least of the sums but those of `label` and of the two beside it.
+inline Sum LeastElsewhere(Sum* sum, int labels, int label) {
+    const int first = std::max(0, label - 1);
+    const int count = std::min(labels - 1, label + 1) - first + 1;
+    std::array<Sum, 3> hidden;
+    std::copy_n(sum + first, count, hidden.begin());
+    std::fill_n(sum + first, count, kNeverSum);
+    const Sum least = Least(sum, labels);
+    std::copy_n(hidden.begin(), count, sum + first);
+    return least;
+}
+
+/// The answers of nodes beside each other whose sums are complete.
+HV_MULTIVERSION
+void AnswerNodes(Sum* sum, int labels, int padded, Answer* answer, int nodes) {
+    for (int node = 0; node < nodes; ++node, sum += padded, ++answer) {
+        const Sum least = Least(sum, padded);
+        const int label = Find(sum, least);
+        answer->label = label;
+        answer->fraction = label > 0 && label + 1 < labels ? FractionAt(sum + label) : 0;
+        answer->lead = LeastElsewhere(sum, padded, label) - least;
+    }
 }
 
 }  // namespace
@@ -28,95 +167,45 @@ SemiGlobalMatching::SemiGlobalMatching(int rows, int max_cols, int labels,
     : rows_(rows),
       max_cols_(max_cols),
       labels_(labels),
-      stride_(labels + 3),
+      padded_((labels + kBlock - 1) / kBlock * kBlock),
       options_(options),
-      grey_(Node(rows, 0)),
+      grey_(static_cast<std::size_t>(rows * (max_cols + 2))),
       costs_(At(rows, 0)),
-      sums_(At(rows, 0)),
-      paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * stride_)) {
+      sums_(At(rows, 0), kNeverSum),
+      paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * PathStride(labels))),
+      answers_(Node(rows, 0)) {
     for (std::size_t edge = 0; edge < jump_costs_.size(); ++edge) {
-        jump_costs_[edge] =
-            std::max(options.least_jump_cost, options.jump_cost * options.edge_grey /
-                                                  (options.edge_grey + static_cast<int>(edge)));
+        const int cost =
+            options.jump_cost * options.edge_grey / (options.edge_grey + static_cast<int>(edge));
+        jump_costs_[edge] = static_cast<Cost>(std::max(options.least_jump_cost, cost));
     }
-}
-
-void SemiGlobalMatching::Start(int cols) {
-    cols_ = cols;
-    for (int row = 0; row < rows_; ++row)
-        std::fill(sums_.data() + At(row, 0), sums_.data() + At(row, cols), Sum{0});
 }
 
 void SemiGlobalMatching::Solve() {
     SweepFrom(0, 1);
     SweepFrom(rows_ - 1, -1);
+    for (int row = 0; row < rows_; ++row) {
+        AnswerNodes(sums_.data() + At(row, 0), labels_, padded_, answers_.data() + Node(row, 0),
+                    cols_);
+    }
 }
 
-/// Paths from the row before and from one side.
+SemiGlobalMatching::Cost* SemiGlobalMatching::PathsOf(int line) {
+    const int first = (line * (max_cols_ + 2) + 1) * kPaths;
+    return paths_.data() + static_cast<std::ptrdiff_t>(first) * PathStride(labels_) + 1;
+}
+
 void SemiGlobalMatching::SweepFrom(int first_row, int down) {
     std::fill(paths_.begin(), paths_.end(), Cost{0});  // beyond the border every label is free
+    const Terms terms{
+        cols_, labels_, padded_, down, static_cast<Cost>(options_.step_cost), jump_costs_.data()};
     for (int i = 0; i < rows_; ++i) {
-        for (int j = 0; j < cols_; ++j)
-            Visit(first_row + i * down, down > 0 ? j : cols_ - 1 - j, down, i % 2);
+        const int row = first_row + i * down;
+        const Line line{costs(row, 0),  sums_.data() + At(row, 0),
+                        GreyOf(row),    GreyOf(i > 0 ? row - down : row),
+                        PathsOf(i % 2), PathsOf(1 - i % 2)};
+        SweepRow(line, terms);
     }
-}
-
-void SemiGlobalMatching::Visit(int row, int col, int down, int line) {
-    const std::array<std::array<int, 2>, kPaths> before{
-        {{row, col - down}, {row - down, col - 1}, {row - down, col}, {row - down, col + 1}}};
-    const std::size_t at = At(row, col);
-    for (int p = 0; p < kPaths; ++p) {
-        const auto& [from_row, from_col] = before[static_cast<std::size_t>(p)];
-        Extend(costs_.data() + at, JumpCost(row, col, from_row, from_col),
-               PathAt(from_row == row ? line : 1 - line, from_col, p), PathAt(line, col, p));
-    }
-    AddPaths(PathAt(line, col, 0), sums_.data() + at);
-}
-
-int SemiGlobalMatching::JumpCost(int row, int col, int from_row, int from_col) const {
-    if (from_row < 0 || from_col < 0 || from_row >= rows_ || from_col >= cols_) return 0;
-    const int edge = std::abs(int{grey_[Node(row, col)]} - int{grey_[Node(from_row, from_col)]});
-    return jump_costs_[static_cast<std::size_t>(edge)];
-}
-
-/// To each label: its cost and the cheapest way from the node before, less the minimum there,
-/// which only keeps the numbers small.
-void SemiGlobalMatching::Extend(const Cost* __restrict cost, int jump_cost,
-                                const Cost* __restrict before, Cost* __restrict path) const {
-    const Cost least = before[labels_ + 1];
-    const auto step = static_cast<Cost>(options_.step_cost);
-    const auto jump = static_cast<Cost>(least + jump_cost);
-    Cost lowest = kNever;
-    for (int k = 0; k < labels_; ++k) {
-        const auto beside = static_cast<Cost>(std::min(before[k - 1], before[k + 1]) + step);
-        const Cost way = std::min(std::min(before[k], beside), jump);
-        path[k] = static_cast<Cost>(cost[k] + way - least);
-        lowest = std::min(lowest, path[k]);
-    }
-    path[-1] = path[labels_] = kNever;
-    path[labels_ + 1] = lowest;
-}
-
-void SemiGlobalMatching::AddPaths(const Cost* __restrict first_path, Sum* __restrict sum) const {
-    const Cost* second = first_path + stride_;
-    const Cost* third = second + stride_;
-    const Cost* fourth = third + stride_;
-    for (int k = 0; k < labels_; ++k)
-        sum[k] = static_cast<Sum>(sum[k] + first_path[k] + second[k] + third[k] + fourth[k]);
-}
-
-SemiGlobalMatching::Answer SemiGlobalMatching::AnswerAt(int row, int col) const {
-    const Sum* sum = sums_.data() + At(row, col);
-    const Sum* best = std::find(sum, sum + labels_, Least(sum, 0, labels_));
-    Answer answer;
-    answer.label = static_cast<int>(best - sum);
-    answer.lead =
-        std::min(Least(sum, 0, answer.label - 1), Least(sum, answer.label + 2, labels_)) - *best;
-    if (answer.label == 0 || answer.label == labels_ - 1) return answer;
-    const auto left = static_cast<float>(best[-1] - *best);
-    const auto right = static_cast<float>(best[1] - *best);
-    if (left + right > 0) answer.fraction = 0.5F * (left - right) / (left + right);
-    return answer;
 }
 
 }  // namespace hitchview::algo
