@@ -11,7 +11,8 @@ using Eigen::Vector2f;
 
 /// Pull of a corner's neighbours where no sample agrees with what it should be.
 constexpr float kLeastSupport = 0.02F;
-constexpr int kRounds = 3;  // of the robust mean
+constexpr float kLeastVote = 0.01F;  // what weighs less has none
+constexpr int kRounds = 3;           // of the robust mean
 
 ScanlineFit ScanlinesOver(const Projection& canvas, const DetailFieldOptions& options) {
     const int spacing_px = CornerSpacing_px(canvas);
@@ -100,20 +101,24 @@ DetailField::Range DetailField::FindRange(Overlap overlap) const {
 
 /// Each sample for the four corners round it.
 void DetailField::Vote(const Range& range, float sign, ScanlineFit& fit) const {
-    const auto vote = [&](int row, int col, const Sample& s, float share) {
+    const auto vote = [&](int row, int col, const ScanlineFit::Ballot& ballot, float weight) {
         if (row < 0 || row >= detail_.rows() || col < range.first || col > range.last) return;
-        fit.Vote(row, col - range.first, sign * s.e_px.x(), s.weight * share);
+        fit.Vote(row, col - range.first, ballot, weight);
     };
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
             for (const Sample& s : samples_[Index(row, col)]) {
+                if (s.weight < kLeastVote) continue;
+                const ScanlineFit::Ballot ballot = fit.BallotFor(sign * s.e_px.x());
                 const Vector2f share = s.off_px.cwiseAbs() / spacing_px_;
                 const int down = s.off_px.y() > 0 ? 1 : -1;
                 const int across = s.off_px.x() > 0 ? 1 : -1;
-                vote(row, col, s, (1 - share.x()) * (1 - share.y()));
-                vote(row, col + across, s, share.x() * (1 - share.y()));
-                vote(row + down, col, s, (1 - share.x()) * share.y());
-                vote(row + down, col + across, s, share.x() * share.y());
+                const float beside = s.weight * share.x();
+                const float here = s.weight - beside;
+                vote(row, col, ballot, here * (1 - share.y()));
+                vote(row, col + across, ballot, beside * (1 - share.y()));
+                vote(row + down, col, ballot, here * share.y());
+                vote(row + down, col + across, ballot, beside * share.y());
             }
         }
     }
