@@ -1,7 +1,9 @@
 #include "algo/detail_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <opencv2/core/hal/intrin.hpp>
 
 namespace hitchview::algo {
 namespace {
@@ -13,6 +15,43 @@ using Eigen::Vector2f;
 constexpr float kLeastSupport = 0.02F;
 constexpr float kLeastVote = 0.01F;  // what weighs less has none
 constexpr int kRounds = 3;           // of the robust mean
+
+/// What samples that agree say.
+struct Agreement {
+    Vector2f sum_px = Vector2f::Zero();  ///< weighted
+    float weight = 0;
+};
+
+/// In a fixed order.
+float SumOf(const cv::v_float32x4& lanes) {
+    std::array<float, DetailField::Neighbours::kBlock> of;
+    cv::v_store(of.data(), lanes);
+    return (of[0] + of[1]) + (of[2] + of[3]);
+}
+
+/// Weights samples by how near they are to `mean`; `scale`: what a squared pixel counts.
+Agreement Agree(const DetailField::Neighbours& around, const Vector2f& mean,
+                const Vector2f& scale) {
+    const cv::v_float32x4 one = cv::v_setall_f32(1);
+    cv::v_float32x4 weight = cv::v_setzero_f32();
+    cv::v_float32x4 sum_x = cv::v_setzero_f32();
+    cv::v_float32x4 sum_y = cv::v_setzero_f32();
+    for (int i = 0; i < around.count; i += DetailField::Neighbours::kBlock) {
+        const cv::v_float32x4 x = cv::v_load(around.x_px.data() + i);
+        const cv::v_float32x4 y = cv::v_load(around.y_px.data() + i);
+        const cv::v_float32x4 off_x = x - cv::v_setall_f32(mean.x());
+        const cv::v_float32x4 off_y = y - cv::v_setall_f32(mean.y());
+        const cv::v_float32x4 ratio = cv::v_setall_f32(scale.x()) * off_x * off_x +
+                                      cv::v_setall_f32(scale.y()) * off_y * off_y;
+        const cv::v_float32x4 fitting =
+            cv::v_load(around.weight.data() + i) / ((one + ratio) * (one + ratio));
+        const cv::v_float32x4 used = fitting & (ratio <= cv::v_setall_f32(4));
+        weight = weight + used;
+        sum_x = sum_x + used * x;
+        sum_y = sum_y + used * y;
+    }
+    return {{SumOf(sum_x), SumOf(sum_y)}, SumOf(weight)};
+}
 
 ScanlineFit ScanlinesOver(const Projection& canvas, const DetailFieldOptions& options) {
     const int spacing_px = CornerSpacing_px(canvas);
@@ -124,29 +163,34 @@ void DetailField::Vote(const Range& range, float sign, ScanlineFit& fit) const {
     }
 }
 
-DetailField::Neighbours DetailField::Around(int row, int col, const Range& range) const {
-    const auto spread_px2 = static_cast<float>(2 * options_.spread_px * options_.spread_px);
-    Neighbours around;
+/// Leaves out what is too far from the corner to count.
+void DetailField::Gather(int row, int col, const Range& range, Neighbours& around) const {
+    const auto reach_px2 = static_cast<float>(options_.reach_px * options_.reach_px);
+    around.count = 0;
     for (int r = std::max(0, row - 1); r <= std::min(detail_.rows() - 1, row + 1); ++r) {
         for (int c = std::max(range.first, col - 1); c <= std::min(range.last, col + 1); ++c) {
             const Vector2f from{spacing_px_ * static_cast<float>(c - col),
                                 spacing_px_ * static_cast<float>(r - row)};
             for (const Sample& s : samples_[Index(r, c)]) {
-                around.x_px[around.count] = s.e_px.x();
-                around.y_px[around.count] = s.e_px.y();
-                around.weight[around.count] =
-                    s.weight * std::exp(-(s.off_px + from).squaredNorm() / spread_px2);
-                ++around.count;
+                const float nearness = 1 - (s.off_px + from).squaredNorm() / reach_px2;
+                if (nearness <= 0) continue;
+                const auto i = static_cast<std::size_t>(around.count++);
+                around.x_px[i] = s.e_px.x();
+                around.y_px[i] = s.e_px.y();
+                around.weight[i] = s.weight * nearness * nearness;
             }
         }
     }
-    return around;
+    for (std::size_t i = 0; i < Neighbours::kBlock; ++i) {
+        const std::size_t beyond = static_cast<std::size_t>(around.count) + i;
+        around.x_px[beyond] = around.y_px[beyond] = around.weight[beyond] = 0;
+    }
 }
 
 /// Robust mean of the samples that agree with the value in x that the scanlines found.
 void DetailField::Settle(int row, int col, const Range& range, float start_px) {
-    const Neighbours around = Around(row, col, range);
-    Neighbours::List weight;
+    Neighbours around;
+    Gather(row, col, range, around);
     Vector2f mean{start_px, 0};
     float support = 0;
     for (int round = 0; round < kRounds; ++round) {
@@ -154,19 +198,10 @@ void DetailField::Settle(int row, int col, const Range& range, float start_px) {
             static_cast<float>(round == 0 ? options_.scanlines.tolerance_px : options_.outlier_px);
         const float across = 1 / (scale_px * scale_px);
         const float down = round == 0 ? 0.04F * across : across;  // the start says nothing of y
-        for (Eigen::Index i = 0; i < around.count; ++i) {
-            const float x_px = around.x_px[i] - mean.x();
-            const float y_px = around.y_px[i] - mean.y();
-            const float ratio = across * x_px * x_px + down * y_px * y_px;
-            const float fitting = around.weight[i] / ((1 + ratio) * (1 + ratio));
-            weight[i] = ratio > 4 ? 0 : fitting;
-        }
-        const auto used = weight.head(around.count);
-        support = used.sum();
+        const Agreement agreement = Agree(around, mean, {across, down});
+        support = agreement.weight;
         if (support <= 0) break;
-        mean = Vector2f{(used * around.x_px.head(around.count)).sum(),
-                        (used * around.y_px.head(around.count)).sum()} /
-               support;
+        mean = agreement.sum_px / support;
     }
     wanted_.at(row, col) = mean;
     support_.at(row, col) = std::max(support, kLeastSupport);
