@@ -14,7 +14,7 @@ using Eigen::Vector2f;
 /// Pull of a corner's neighbours where no sample agrees with what it should be.
 constexpr float kLeastSupport = 0.02F;
 constexpr float kLeastVote = 0.01F;  // what weighs less has none
-constexpr int kRounds = 3;           // of the robust mean
+constexpr int kRounds = 2;           // of the robust mean
 
 /// What samples that agree say.
 struct Agreement {
@@ -69,6 +69,8 @@ DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& opt
       scanlines_{{ScanlinesOver(canvas, options), ScanlinesOver(canvas, options)}},
       wanted_(canvas, Vector2f::Zero()),
       support_(canvas, 0),
+      neighbours_share_(canvas, 0),
+      smooth_(canvas, Vector2f::Zero()),
       misses_(canvas, Vector2f::Zero()),
       detail_(canvas, Vector2f::Zero()),
       doubt_px_(canvas, static_cast<float>(options.unknown_px)) {
@@ -120,8 +122,8 @@ void DetailField::Fit(Overlap overlap, const VertexField& discrepancy) {
             Settle(row, col, range, sign * scanlines.At(row, col - range.first));
     }
     Subtract(discrepancy, range);
-    for (int sweep = 0; sweep < options_.sweeps; ++sweep) Sweep(range);
-    Doubt(discrepancy, range);
+    Smooth(range);
+    Doubt(range);
 }
 
 /// The columns that have samples.
@@ -210,31 +212,44 @@ void DetailField::Settle(int row, int col, const Range& range, float start_px) {
 void DetailField::Subtract(const VertexField& discrepancy, const Range& range) {
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
-            wanted_.at(row, col) -=
-                algo::Sample(mesh_, discrepancy, detail_.Pixel(row, col)).cast<float>();
+            Vector2f& smooth = smooth_.at(row, col);
+            smooth = algo::Sample(mesh_, discrepancy, detail_.Pixel(row, col)).cast<float>();
+            wanted_.at(row, col) -= smooth;
             detail_.at(row, col) = wanted_.at(row, col);
         }
     }
 }
 
-/// Gauss-Seidel on sum support |u - wanted|^2 + smoothness |grad u|^2.
-void DetailField::Sweep(const Range& range) {
+/// Minimises sum support |u - wanted|^2 + smoothness |grad u|^2 (Gauss-Seidel).
+void DetailField::Smooth(const Range& range) {
     const auto smoothness = static_cast<float>(options_.smoothness);
     for (int row = 1; row + 1 < detail_.rows(); ++row) {
         for (int col = range.first + 1; col < range.last; ++col) {
-            const Vector2f around = detail_.at(row, col - 1) + detail_.at(row, col + 1) +
-                                    detail_.at(row - 1, col) + detail_.at(row + 1, col);
             const float support = support_.at(row, col);
-            detail_.at(row, col) =
-                (smoothness * around + support * wanted_.at(row, col)) / (4 * smoothness + support);
+            const float share = smoothness / (4 * smoothness + support);
+            neighbours_share_.at(row, col) = share;
+            wanted_.at(row, col) *= 1 - 4 * share;
+        }
+    }
+    for (int sweep = 0; sweep < options_.sweeps; ++sweep) Sweep(range);
+}
+
+void DetailField::Sweep(const Range& range) {
+    for (int row = 1; row + 1 < detail_.rows(); ++row) {
+        for (int col = range.first + 1; col < range.last; ++col) {
+            const float share = neighbours_share_.at(row, col);
+            const Vector2f rest = wanted_.at(row, col) +
+                                  share * (detail_.at(row, col + 1) + detail_.at(row - 1, col) +
+                                           detail_.at(row + 1, col));
+            detail_.at(row, col) = rest + share * detail_.at(row, col - 1);
         }
     }
 }
 
-void DetailField::Doubt(const VertexField& discrepancy, const Range& range) {
+void DetailField::Doubt(const Range& range) {
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col)
-            misses_.at(row, col) = MissesAt(discrepancy, row, col);
+            misses_.at(row, col) = MissesAt(row, col);
     }
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
@@ -250,10 +265,9 @@ void DetailField::Doubt(const VertexField& discrepancy, const Range& range) {
 }
 
 /// How far the samples nearest to a corner are off, weighted, and their weights.
-Vector2f DetailField::MissesAt(const VertexField& discrepancy, int row, int col) const {
+Vector2f DetailField::MissesAt(int row, int col) const {
     constexpr float kLeastWeight = 0.2F;  // what is hard to match is in doubt, too
-    const Vector2f e = detail_.at(row, col) +
-                       algo::Sample(mesh_, discrepancy, detail_.Pixel(row, col)).cast<float>();
+    const Vector2f e = detail_.at(row, col) + smooth_.at(row, col);
     Vector2f misses = Vector2f::Zero();
     for (const Sample& s : samples_[Index(row, col)]) {
         const float weight = std::max(kLeastWeight, s.weight);

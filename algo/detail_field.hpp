@@ -46,7 +46,7 @@ class DetailField {
     /// How far the samples round a corner are off the result on average, px; unknown_px without.
     [[nodiscard]] const CornerScalars& doubt_px() const { return doubt_px_; }
 
-    static constexpr std::size_t kMaxSamples = 12;  ///< of a corner
+    static constexpr std::size_t kMaxSamples = 8;  ///< of a corner
     /// Samples of a corner and of the eight round it, and a block of nothing.
     struct Neighbours {
         static constexpr std::size_t kBlock = 4;  ///< handled at once
@@ -75,9 +75,10 @@ class DetailField {
     void Vote(const Range& range, float sign, ScanlineFit& fit) const;
     void Settle(int row, int col, const Range& range, float start_px);
     void Subtract(const VertexField& discrepancy, const Range& range);
+    void Smooth(const Range& range);
     void Sweep(const Range& range);
-    void Doubt(const VertexField& discrepancy, const Range& range);
-    [[nodiscard]] Eigen::Vector2f MissesAt(const VertexField& discrepancy, int row, int col) const;
+    void Doubt(const Range& range);
+    [[nodiscard]] Eigen::Vector2f MissesAt(int row, int col) const;
     void Gather(int row, int col, const Range& range, Neighbours& around) const;
     [[nodiscard]] std::size_t Index(int row, int col) const {
         return static_cast<std::size_t>(row * detail_.cols() + col);
@@ -89,9 +90,11 @@ class DetailField {
     DetailFieldOptions options_;
     std::vector<Samples> samples_;  // of each corner: those nearer to it than to others
     PerOverlap<ScanlineFit> scanlines_;
-    CornerField wanted_;     // the discrepancy, then its rest
-    CornerScalars support_;  // weight of the samples that agree with it
-    CornerField misses_;     // weighted sum and weight of each corner
+    CornerField wanted_;              // the discrepancy, then its rest, then its share
+    CornerScalars support_;           // weight of the samples that agree with it
+    CornerScalars neighbours_share_;  // of each of four, in the membrane
+    CornerField smooth_;              // the mesh's part of the discrepancy
+    CornerField misses_;              // weighted sum and weight of each corner
     CornerField detail_;
     CornerScalars doubt_px_;
 };

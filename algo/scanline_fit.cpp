@@ -32,7 +32,8 @@ struct Changes {
 
 /// Lets values be taken from neighbours, for no more than `most`: at first from those beside, then
 /// from ever farther ones.
-inline void Spread(const Changes& change, Price* __restrict wish) {
+HV_MULTIVERSION
+void Spread(const Changes& change, Price* __restrict wish) {
     constexpr int kMargin = kValues;
     std::array<Price, kValues + 2 * kMargin> padded;
     padded.fill(change.most);
@@ -49,20 +50,17 @@ inline void Spread(const Changes& change, Price* __restrict wish) {
     }
 }
 
-/// Tells a node the wish of those before it, and adds its own. It fades with each change.
+/// Tells a node the wish of those before it, and adds its own.
 HV_MULTIVERSION
-void HandOn(const Price* __restrict cost, const Changes& change, Price* __restrict wish,
+void HandOn(const Price* __restrict cost, Price most, Price* __restrict wish,
             Price* __restrict heard) {
-    const Changes changes = change;
     Price least = kNever;
     for (int k = 0; k < kValues; ++k) {
         heard[k] = static_cast<Price>(heard[k] + wish[k]);
         wish[k] = static_cast<Price>(wish[k] + cost[k]);
         least = std::min(least, wish[k]);
     }
-    for (int k = 0; k < kValues; ++k)
-        wish[k] = std::min(static_cast<Price>(wish[k] - least), changes.most);
-    Spread(changes, wish);
+    for (int k = 0; k < kValues; ++k) wish[k] = std::min(static_cast<Price>(wish[k] - least), most);
 }
 
 /// Takes the least price away, which only keeps the numbers small.
@@ -150,7 +148,7 @@ void ScanlineFit::Solve() {
     for (int row = 0; row < rows_; ++row) SolveRow(row);
 }
 
-/// Hands on, from row to row, what the rows before want.
+/// Hands on, from row to row, what the rows before want; it fades with each change.
 void ScanlineFit::Listen(int down) {
     const Changes change{PriceOf(options_.change_cost_down), PriceOf(options_.most_cost_down)};
     std::fill(wish_.begin(), wish_.end(), Price{0});
@@ -158,7 +156,9 @@ void ScanlineFit::Listen(int down) {
         const int row = down > 0 ? i : rows_ - 1 - i;
         for (int col = 0; col < cols_; ++col) {
             const std::size_t at = Index(row, col);
-            HandOn(cost_.data() + at, change, wish_.data() + Index(0, col), heard_.data() + at);
+            Price* wish = wish_.data() + Index(0, col);
+            HandOn(cost_.data() + at, change.most, wish, heard_.data() + at);
+            Spread(change, wish);
         }
     }
 }

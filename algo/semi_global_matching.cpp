@@ -137,27 +137,26 @@ inline float FractionAt(const Sum* best) {
 }
 
 /// The least of the sums but those of `label` and of the two beside it.
-inline Sum LeastElsewhere(Sum* sum, int labels, int label) {
-    const int first = std::max(0, label - 1);
-    const int count = std::min(labels - 1, label + 1) - first + 1;
-    std::array<Sum, 3> hidden;
-    std::copy_n(sum + first, count, hidden.begin());
-    std::fill_n(sum + first, count, kNeverSum);
-    const Sum least = Least(sum, labels);
-    std::copy_n(hidden.begin(), count, sum + first);
+inline Sum LeastElsewhere(const Sum* sum, int labels, int label) {
+    Sum least = kNeverSum;
+    for (int k = 0; k < labels; ++k) {
+        const auto apart = static_cast<Sum>(k - label);
+        const bool beside = apart >= -1 && apart <= 1;
+        least = std::min(least, beside ? kNeverSum : sum[k]);
+    }
     return least;
 }
 
-/// The answers of nodes beside each other whose sums are complete.
+/// From complete sums.
 HV_MULTIVERSION
-void AnswerNodes(Sum* sum, int labels, int padded, Answer* answer, int nodes) {
-    for (int node = 0; node < nodes; ++node, sum += padded, ++answer) {
-        const Sum least = Least(sum, padded);
-        const int label = Find(sum, least);
-        answer->label = label;
-        answer->fraction = label > 0 && label + 1 < labels ? FractionAt(sum + label) : 0;
-        answer->lead = LeastElsewhere(sum, padded, label) - least;
-    }
+Answer AnswerFrom(const Sum* sum, int labels, int padded) {
+    Answer answer;
+    const Sum least = Least(sum, padded);
+    answer.label = Find(sum, least);
+    answer.lead = LeastElsewhere(sum, padded, answer.label) - least;
+    if (answer.label > 0 && answer.label + 1 < labels)
+        answer.fraction = FractionAt(sum + answer.label);
+    return answer;
 }
 
 }  // namespace
@@ -172,8 +171,7 @@ SemiGlobalMatching::SemiGlobalMatching(int rows, int max_cols, int labels,
       grey_(static_cast<std::size_t>(rows * (max_cols + 2))),
       costs_(At(rows, 0)),
       sums_(At(rows, 0), kNeverSum),
-      paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * PathStride(labels))),
-      answers_(Node(rows, 0)) {
+      paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * PathStride(labels))) {
     for (std::size_t edge = 0; edge < jump_costs_.size(); ++edge) {
         const int cost =
             options.jump_cost * options.edge_grey / (options.edge_grey + static_cast<int>(edge));
@@ -184,10 +182,10 @@ SemiGlobalMatching::SemiGlobalMatching(int rows, int max_cols, int labels,
 void SemiGlobalMatching::Solve() {
     SweepFrom(0, 1);
     SweepFrom(rows_ - 1, -1);
-    for (int row = 0; row < rows_; ++row) {
-        AnswerNodes(sums_.data() + At(row, 0), labels_, padded_, answers_.data() + Node(row, 0),
-                    cols_);
-    }
+}
+
+SemiGlobalMatching::Answer SemiGlobalMatching::AnswerAt(int row, int col) const {
+    return AnswerFrom(sums_.data() + At(row, col), labels_, padded_);
 }
 
 SemiGlobalMatching::Cost* SemiGlobalMatching::PathsOf(int line) {

@@ -40,9 +40,7 @@ class SemiGlobalMatching {
         int lead = 0;        ///< summed cost of the best label that is no neighbour, less its own
     };
     /// After Solve.
-    [[nodiscard]] const Answer& AnswerAt(int row, int col) const {
-        return answers_[Node(row, col)];
-    }
+    [[nodiscard]] Answer AnswerAt(int row, int col) const;
 
     [[nodiscard]] int rows() const { return rows_; }
     [[nodiscard]] int cols() const { return cols_; }
@@ -75,7 +73,6 @@ class SemiGlobalMatching {
     std::vector<Cost> costs_;
     std::vector<Sum> sums_;
     std::vector<Cost> paths_;
-    std::vector<Answer> answers_;
 };
 
 }  // namespace hitchview::algo
