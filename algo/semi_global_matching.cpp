@@ -14,7 +14,7 @@ using Answer = SemiGlobalMatching::Answer;
 using Cost = SemiGlobalMatching::Cost;
 using Sum = SemiGlobalMatching::Sum;
 
-/// Labels are handled in blocks of so many.
+/// Labels are searched in blocks of so many.
 constexpr int kBlock = 32;
 /// Dearer than any path, which costs at most kDearest and a jump; one step more does not overflow.
 constexpr Cost kNever = 240;
@@ -28,9 +28,8 @@ constexpr int PathStride(int labels) {
 
 /// The way to a node from the one before on a path.
 struct Way {
-    const Cost* before;  ///< costs of the labels there
-    Cost least;          ///< of them
-    Cost jump;           ///< to any label here
+    const Cost* before;  ///< costs of the labels there, then of none, then the least of them
+    int jump_cost;
 };
 
 /// A row of nodes; each pointer is to the node at its left end.
@@ -48,7 +47,6 @@ struct Line {
 struct Terms {
     int cols;
     int labels;
-    int padded;
     int down;  ///< 1: from the top and the left, -1: from the bottom and the right
     Cost step;
     const Cost* jumps;  ///< by difference of grey
@@ -56,57 +54,55 @@ struct Terms {
 
 /// Cost of label `k` by way of the node before, less the minimum there, which only keeps the
 /// numbers small.
-inline Cost Extended(const Way& way, Cost own, Cost step, int k) {
-    const auto beside = static_cast<Cost>(std::min(way.before[k - 1], way.before[k + 1]) + step);
-    const Cost cheapest = std::min(std::min(way.before[k], beside), way.jump);
-    return static_cast<Cost>(own + cheapest - way.least);
+inline Cost Extended(const Cost* before, Cost least, Cost jump, Cost own, Cost step, int k) {
+    const auto beside = static_cast<Cost>(std::min(before[k - 1], before[k + 1]) + step);
+    const Cost cheapest = std::min(std::min(before[k], beside), jump);
+    return static_cast<Cost>(own + cheapest - least);
 }
 
-/// Extends two paths to a node and adds them to its sums. Gives the least cost of each.
+/// Extends two paths to a node and adds them to its sums.
 HV_MULTIVERSION
-std::array<Cost, 2> ExtendTwo(const Cost* __restrict cost, const Way& a, const Way& b, Cost step,
-                              int labels, Cost* __restrict to_a, Cost* __restrict to_b,
-                              Sum* __restrict sum) {
-    const Way from_a = a;
-    const Way from_b = b;
-    Cost least_a = kNever;
-    Cost least_b = kNever;
+void ExtendTwo(const Cost* __restrict cost, const Way& a, const Way& b, Cost step, int labels,
+               Cost* __restrict to_a, Cost* __restrict to_b, Sum* __restrict sum) {
+    const Cost* __restrict before_a = a.before;
+    const Cost* __restrict before_b = b.before;
+    const Cost least_a = before_a[labels + 1];
+    const Cost least_b = before_b[labels + 1];
+    const auto jump_a = static_cast<Cost>(least_a + a.jump_cost);
+    const auto jump_b = static_cast<Cost>(least_b + b.jump_cost);
+    Cost lowest_a = kNever;
+    Cost lowest_b = kNever;
     for (int k = 0; k < labels; ++k) {
-        const Cost at_a = Extended(from_a, cost[k], step, k);
-        const Cost at_b = Extended(from_b, cost[k], step, k);
+        const Cost at_a = Extended(before_a, least_a, jump_a, cost[k], step, k);
+        const Cost at_b = Extended(before_b, least_b, jump_b, cost[k], step, k);
         to_a[k] = at_a;
         to_b[k] = at_b;
-        least_a = std::min(least_a, at_a);
-        least_b = std::min(least_b, at_b);
+        lowest_a = std::min(lowest_a, at_a);
+        lowest_b = std::min(lowest_b, at_b);
         sum[k] = static_cast<Sum>(sum[k] + at_a + at_b);
     }
-    return {least_a, least_b};
+    to_a[-1] = to_a[labels] = to_b[-1] = to_b[labels] = kNever;
+    to_a[labels + 1] = lowest_a;
+    to_b[labels + 1] = lowest_b;
 }
 
 void VisitNode(const Line& line, const Terms& terms, int col) {
     const int stride = PathStride(terms.labels);
     const auto way = [&](const Cost* paths, const std::uint8_t* grey, int from, int path) {
         const Cost* before = paths + (from * kPaths + path) * stride;
-        const Cost least = before[terms.labels + 1];
         const int edge = std::abs(int{line.grey[col]} - int{grey[from]});
-        return Way{before, least, static_cast<Cost>(least + terms.jumps[edge])};
+        return Way{before, terms.jumps[edge]};
     };
     const auto above = [&](int from, int path) {
         return way(line.paths_before, line.grey_before, from, path);
     };
-    const Cost* cost = line.costs + col * terms.padded;
-    Sum* sum = line.sums + col * terms.padded;
+    const Cost* cost = line.costs + col * terms.labels;
+    Sum* sum = line.sums + col * terms.labels;
     Cost* to = line.paths + col * kPaths * stride;
-    if (terms.down > 0) std::fill_n(sum, terms.labels, Sum{0});
-    const auto first = ExtendTwo(cost, way(line.paths, line.grey, col - terms.down, 0),
-                                 above(col - 1, 1), terms.step, terms.labels, to, to + stride, sum);
-    const auto second = ExtendTwo(cost, above(col, 2), above(col + 1, 3), terms.step, terms.labels,
-                                  to + 2 * stride, to + 3 * stride, sum);
-    for (const Cost least : {first[0], first[1], second[0], second[1]}) {
-        to[-1] = to[terms.labels] = kNever;
-        to[terms.labels + 1] = least;
-        to += stride;
-    }
+    ExtendTwo(cost, way(line.paths, line.grey, col - terms.down, 0), above(col - 1, 1), terms.step,
+              terms.labels, to, to + stride, sum);
+    ExtendTwo(cost, above(col, 2), above(col + 1, 3), terms.step, terms.labels, to + 2 * stride,
+              to + 3 * stride, sum);
 }
 
 /// Paths from the row before and from one side.
@@ -122,9 +118,9 @@ inline Sum Least(const Sum* sum, int labels) {
 }
 
 /// The first of the labels with this sum, which is there.
-inline int Find(const Sum* sum, Sum wanted) {
+inline int Find(const Sum* sum, int labels, Sum wanted) {
     int block = 0;
-    while (Least(sum + block, kBlock) != wanted) block += kBlock;
+    while (Least(sum + block, std::min(kBlock, labels - block)) != wanted) block += kBlock;
     while (sum[block] != wanted) ++block;
     return block;
 }
@@ -149,11 +145,11 @@ inline Sum LeastElsewhere(const Sum* sum, int labels, int label) {
 
 /// From complete sums.
 HV_MULTIVERSION
-Answer AnswerFrom(const Sum* sum, int labels, int padded) {
+Answer AnswerFrom(const Sum* sum, int labels) {
     Answer answer;
-    const Sum least = Least(sum, padded);
-    answer.label = Find(sum, least);
-    answer.lead = LeastElsewhere(sum, padded, answer.label) - least;
+    const Sum least = Least(sum, labels);
+    answer.label = Find(sum, labels, least);
+    answer.lead = LeastElsewhere(sum, labels, answer.label) - least;
     if (answer.label > 0 && answer.label + 1 < labels)
         answer.fraction = FractionAt(sum + answer.label);
     return answer;
@@ -166,11 +162,10 @@ SemiGlobalMatching::SemiGlobalMatching(int rows, int max_cols, int labels,
     : rows_(rows),
       max_cols_(max_cols),
       labels_(labels),
-      padded_((labels + kBlock - 1) / kBlock * kBlock),
       options_(options),
       grey_(static_cast<std::size_t>(rows * (max_cols + 2))),
       costs_(At(rows, 0)),
-      sums_(At(rows, 0), kNeverSum),
+      sums_(At(rows, 0)),
       paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * PathStride(labels))) {
     for (std::size_t edge = 0; edge < jump_costs_.size(); ++edge) {
         const int cost =
@@ -185,7 +180,7 @@ void SemiGlobalMatching::Solve() {
 }
 
 SemiGlobalMatching::Answer SemiGlobalMatching::AnswerAt(int row, int col) const {
-    return AnswerFrom(sums_.data() + At(row, col), labels_, padded_);
+    return AnswerFrom(sums_.data() + At(row, col), labels_);
 }
 
 SemiGlobalMatching::Cost* SemiGlobalMatching::PathsOf(int line) {
@@ -195,10 +190,11 @@ SemiGlobalMatching::Cost* SemiGlobalMatching::PathsOf(int line) {
 
 void SemiGlobalMatching::SweepFrom(int first_row, int down) {
     std::fill(paths_.begin(), paths_.end(), Cost{0});  // beyond the border every label is free
-    const Terms terms{
-        cols_, labels_, padded_, down, static_cast<Cost>(options_.step_cost), jump_costs_.data()};
+    const Terms terms{cols_, labels_, down, static_cast<Cost>(options_.step_cost),
+                      jump_costs_.data()};
     for (int i = 0; i < rows_; ++i) {
         const int row = first_row + i * down;
+        if (down > 0) std::fill_n(sums_.data() + At(row, 0), cols_ * labels_, Sum{0});
         const Line line{costs(row, 0),  sums_.data() + At(row, 0),
                         GreyOf(row),    GreyOf(i > 0 ? row - down : row),
                         PathsOf(i % 2), PathsOf(1 - i % 2)};

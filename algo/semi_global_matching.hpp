@@ -52,7 +52,7 @@ class SemiGlobalMatching {
                static_cast<std::size_t>(col);
     }
     [[nodiscard]] std::size_t At(int row, int col) const {
-        return Node(row, col) * static_cast<std::size_t>(padded_);
+        return Node(row, col) * static_cast<std::size_t>(labels_);
     }
     /// Of a row, which has one node more at either end.
     [[nodiscard]] std::uint8_t* GreyOf(int row) {
@@ -66,7 +66,6 @@ class SemiGlobalMatching {
     int max_cols_;
     int cols_ = 0;
     int labels_;
-    int padded_;  // labels, up to whole blocks
     SemiGlobalOptions options_;
     std::array<Cost, 256> jump_costs_;  // by difference of grey
     std::vector<std::uint8_t> grey_;
