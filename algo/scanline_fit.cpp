@@ -34,12 +34,12 @@ struct Changes {
 /// from ever farther ones.
 HV_MULTIVERSION
 void Spread(const Changes& change, Price* __restrict wish) {
-    constexpr int kMargin = kValues;
+    constexpr int kMargin = kValues / 2;
     std::array<Price, kValues + 2 * kMargin> padded;
     padded.fill(change.most);
     Price* own = padded.data() + kMargin;
     int reach = 0;
-    for (int away = 1; away < kMargin && reach * change.step < change.most; away *= 2) {
+    for (int away = 1; away <= kMargin && reach * change.step < change.most; away *= 2) {
         std::copy_n(wish, kValues, own);
         const auto step = static_cast<Price>(std::min<int>(away * change.step, change.most));
         for (int k = 0; k < kValues; ++k) {

@@ -15,7 +15,7 @@ using Cost = SemiGlobalMatching::Cost;
 using Sum = SemiGlobalMatching::Sum;
 
 /// Labels are searched in blocks of so many.
-constexpr int kBlock = 32;
+constexpr int kBlock = 16;
 /// Dearer than any path, which costs at most kDearest and a jump; one step more does not overflow.
 constexpr Cost kNever = 240;
 constexpr Sum kNeverSum = std::numeric_limits<Sum>::max();
@@ -120,7 +120,7 @@ inline Sum Least(const Sum* sum, int labels) {
 /// The first of the labels with this sum, which is there.
 inline int Find(const Sum* sum, int labels, Sum wanted) {
     int block = 0;
-    while (Least(sum + block, std::min(kBlock, labels - block)) != wanted) block += kBlock;
+    while (block + kBlock < labels && Least(sum + block, kBlock) != wanted) block += kBlock;
     while (sum[block] != wanted) ++block;
     return block;
 }
@@ -132,24 +132,15 @@ inline float FractionAt(const Sum* best) {
     return left + right > 0 ? 0.5F * (left - right) / (left + right) : 0;
 }
 
-/// The least of the sums but those of `label` and of the two beside it.
-inline Sum LeastElsewhere(const Sum* sum, int labels, int label) {
-    Sum least = kNeverSum;
-    for (int k = 0; k < labels; ++k) {
-        const auto apart = static_cast<Sum>(k - label);
-        const bool beside = apart >= -1 && apart <= 1;
-        least = std::min(least, beside ? kNeverSum : sum[k]);
-    }
-    return least;
-}
-
 /// From complete sums.
 HV_MULTIVERSION
 Answer AnswerFrom(const Sum* sum, int labels) {
     Answer answer;
     const Sum least = Least(sum, labels);
     answer.label = Find(sum, labels, least);
-    answer.lead = LeastElsewhere(sum, labels, answer.label) - least;
+    const int after = std::min(labels, answer.label + 2);
+    const Sum rival = std::min(Least(sum, answer.label - 1), Least(sum + after, labels - after));
+    answer.lead = rival - least;
     if (answer.label > 0 && answer.label + 1 < labels)
         answer.fraction = FractionAt(sum + answer.label);
     return answer;
