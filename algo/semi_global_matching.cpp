@@ -60,10 +60,10 @@ inline Cost Extended(const Cost* before, Cost least, Cost jump, Cost own, Cost s
     return static_cast<Cost>(own + cheapest - least);
 }
 
-/// Extends two paths to a node and adds them to its sums.
+/// Extends two paths to a node and adds them to its sums; `kept`: the bits of those that count.
 HV_MULTIVERSION
 void ExtendTwo(const Cost* __restrict cost, const Way& a, const Way& b, Cost step, int labels,
-               Cost* __restrict to_a, Cost* __restrict to_b, Sum* __restrict sum) {
+               Cost* __restrict to_a, Cost* __restrict to_b, Sum kept, Sum* __restrict sum) {
     const Cost* __restrict before_a = a.before;
     const Cost* __restrict before_b = b.before;
     const Cost least_a = before_a[labels + 1];
@@ -79,7 +79,7 @@ void ExtendTwo(const Cost* __restrict cost, const Way& a, const Way& b, Cost ste
         to_b[k] = at_b;
         lowest_a = std::min(lowest_a, at_a);
         lowest_b = std::min(lowest_b, at_b);
-        sum[k] = static_cast<Sum>(sum[k] + at_a + at_b);
+        sum[k] = static_cast<Sum>((sum[k] & kept) + at_a + at_b);
     }
     to_a[-1] = to_a[labels] = to_b[-1] = to_b[labels] = kNever;
     to_a[labels + 1] = lowest_a;
@@ -99,10 +99,12 @@ void VisitNode(const Line& line, const Terms& terms, int col) {
     const Cost* cost = line.costs + col * terms.labels;
     Sum* sum = line.sums + col * terms.labels;
     Cost* to = line.paths + col * kPaths * stride;
+    constexpr Sum kAll = -1;
+    const Sum kept = terms.down > 0 ? Sum{0} : kAll;  // the first sweep begins anew
     ExtendTwo(cost, way(line.paths, line.grey, col - terms.down, 0), above(col - 1, 1), terms.step,
-              terms.labels, to, to + stride, sum);
+              terms.labels, to, to + stride, kept, sum);
     ExtendTwo(cost, above(col, 2), above(col + 1, 3), terms.step, terms.labels, to + 2 * stride,
-              to + 3 * stride, sum);
+              to + 3 * stride, kAll, sum);
 }
 
 /// Paths from the row before and from one side.
@@ -185,7 +187,6 @@ void SemiGlobalMatching::SweepFrom(int first_row, int down) {
                       jump_costs_.data()};
     for (int i = 0; i < rows_; ++i) {
         const int row = first_row + i * down;
-        if (down > 0) std::fill_n(sums_.data() + At(row, 0), cols_ * labels_, Sum{0});
         const Line line{costs(row, 0),  sums_.data() + At(row, 0),
                         GreyOf(row),    GreyOf(i > 0 ? row - down : row),
                         PathsOf(i % 2), PathsOf(1 - i % 2)};
