@@ -15,7 +15,7 @@ namespace hitchview::algo {
 
 struct DetailFieldOptions {
     double kappa = 0.5;         ///< as of the stitching field
-    double reach_px = 12;       ///< a sample this far from a corner tells nothing of it
+    double reach_px = 14;       ///< a sample this far from a corner tells nothing of it
     double outlier_px = 2;      ///< a sample this far off its corner's value counts a quarter
     double smoothness = 0.05;   ///< of the membrane, against a corner with one full sample
     int sweeps = 6;             ///< of the membrane
