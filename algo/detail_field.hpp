@@ -46,7 +46,7 @@ class DetailField {
     /// How far the samples round a corner are off the result on average, px; unknown_px without.
     [[nodiscard]] const CornerScalars& doubt_px() const { return doubt_px_; }
 
-    static constexpr std::size_t kMaxSamples = 8;  ///< of a corner
+    static constexpr std::size_t kMaxSamples = 12;  ///< of a corner
     /// Samples of a corner and of the eight round it, and a block of nothing.
     struct Neighbours {
         static constexpr std::size_t kBlock = 4;  ///< handled at once

@@ -253,8 +253,7 @@ void OverlapParallax::CompareNode(int row, int col) {
 
 void OverlapParallax::TakeAnswers(const PerUnit<MatchView>& views) {
     for (int row = 0; row < rows(); ++row) {
-        for (int col = row % 2; col < cols(); col += 2)
-            matches_[Index(row, col)] = MatchOf(views, row, col);
+        for (int col = 0; col < cols(); ++col) matches_[Index(row, col)] = MatchOf(views, row, col);
     }
 }
 

@@ -63,7 +63,6 @@ class OverlapParallax {
 
     [[nodiscard]] int rows() const { return matching_.rows(); }
     [[nodiscard]] int cols() const { return matching_.cols(); }  ///< 0: nothing overlaps
-    /// Told where row + col is even: every other node only helps its neighbours.
     [[nodiscard]] const std::optional<ParallaxMatch>& At(int row, int col) const {
         return matches_[Index(row, col)];
     }

@@ -153,12 +153,12 @@ TEST_P(OverlapParallaxOfStandTest, FindsWhatBothUnitsSeeToHalfAPixel) {
         OverlapParallax parallax = views.MakeParallax(overlap);
         parallax.Match(views.match_views(), views.R_tractor_trailer());
         const Scores scores = ScoresOf(views, parallax);
-        EXPECT_GT(scores.ground.visible, 800 / OverlapParallax::kRowPitch_px) << ToString(overlap);
+        EXPECT_GT(scores.ground.visible, 1600 / OverlapParallax::kRowPitch_px) << ToString(overlap);
         EXPECT_GT(scores.ground.RightShare(), GetParam().level ? 0.95 : 0.8) << ToString(overlap);
-        EXPECT_GT(scores.wall.visible, 2000 / OverlapParallax::kRowPitch_px) << ToString(overlap);
+        EXPECT_GT(scores.wall.visible, 4000 / OverlapParallax::kRowPitch_px) << ToString(overlap);
         EXPECT_GT(scores.wall.RightShare(), 0.92) << ToString(overlap);
         EXPECT_GT(scores.wall.clear, 0.8 * scores.wall.visible) << ToString(overlap);
-        EXPECT_GT(scores.board.visible, 200) << ToString(overlap);
+        EXPECT_GT(scores.board.visible, 400) << ToString(overlap);
         EXPECT_GT(scores.board.RightShare(), 0.8) << ToString(overlap) << scores.board.RightShare();
     }
 }
