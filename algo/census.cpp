@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "algo/multiversion.hpp"
+
 namespace hitchview::algo {
 namespace {
 
@@ -18,6 +20,7 @@ constexpr auto kNeighbours = [] {
 }();
 
 /// Eight bits of each pixel of a row.
+HV_MULTIVERSION
 void CompareEight(const std::uint8_t* __restrict centre,
                   const std::array<const std::uint8_t*, 8>& neighbour, int count,
                   std::uint8_t* __restrict bits) {
@@ -29,6 +32,20 @@ void CompareEight(const std::uint8_t* __restrict centre,
         };
         bits[x] = static_cast<std::uint8_t>(bit(a, 1) | bit(b, 2) | bit(c, 4) | bit(d, 8) |
                                             bit(e, 16) | bit(f, 32) | bit(g, 64) | bit(h, 128));
+    }
+}
+
+/// Signatures of a row from their bytes.
+HV_MULTIVERSION
+void Pack(const std::array<const std::uint8_t*, Census::kBytes>& bytes, const std::uint8_t* allowed,
+          int count, std::uint64_t* __restrict out) {
+    const auto [a, b, c, d, e, f] = bytes;
+    for (int x = 0; x < count; ++x) {
+        const auto half = [&](const std::uint8_t* p, const std::uint8_t* q, const std::uint8_t* r) {
+            return static_cast<std::uint32_t>(p[x] << 16U | q[x] << 8U | r[x]);
+        };
+        const std::uint64_t signature = std::uint64_t{half(a, b, c)} << 24U | half(d, e, f);
+        out[x] = allowed[x] != 0 ? signature : Census::kNone;
     }
 }
 
@@ -46,14 +63,10 @@ void Census::Build(const cv::Mat1b& picture, const cv::Mat1b& mask, int first, i
     const int to = std::min(last, picture.cols - 1 - kHalf) + 1;
     for (int y = (kHalf + pitch - 1) / pitch * pitch; y < picture.rows - kHalf; y += pitch) {
         CompareRow(picture, y, from, to);
-        std::uint64_t* out = signatures_.data() + static_cast<std::ptrdiff_t>(y) * width_px_;
-        const std::uint8_t* allowed = mask[y];
-        for (int x = from; x < to; ++x) {
-            std::uint64_t signature = 0;
-            for (const auto& bytes : bytes_)
-                signature = signature << 8U | bytes[static_cast<std::size_t>(x)];
-            out[x] = allowed[x] != 0 ? signature : kNone;
-        }
+        std::array<const std::uint8_t*, kBytes> bytes;
+        for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = bytes_[i].data() + from;
+        Pack(bytes, mask[y] + from, to - from,
+             signatures_.data() + static_cast<std::ptrdiff_t>(y) * width_px_ + from);
     }
 }
 

@@ -14,6 +14,7 @@ class Census {
  public:
     static constexpr int kHalf = 3;
     static constexpr int kBits = (2 * kHalf + 1) * (2 * kHalf + 1) - 1;
+    static constexpr int kBytes = kBits / 8;
     /// Set in what stands in for a signature where there is none, and nowhere else.
     static constexpr std::uint64_t kNone = std::uint64_t{1} << 63U;
 
@@ -31,8 +32,6 @@ class Census {
     [[nodiscard]] const std::uint64_t* data() const { return signatures_.data(); }
 
  private:
-    static constexpr int kBytes = kBits / 8;
-
     void CompareRow(const cv::Mat1b& picture, int y, int from, int to);
 
     int width_px_;

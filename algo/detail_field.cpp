@@ -1,7 +1,9 @@
 #include "algo/detail_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <opencv2/core/hal/intrin.hpp>
 
 namespace hitchview::algo {
 namespace {
@@ -11,7 +13,45 @@ using Eigen::Vector2f;
 
 /// Pull of a corner's neighbours where no sample agrees with what it should be.
 constexpr float kLeastSupport = 0.02F;
-constexpr int kRounds = 3;  // of the robust mean
+constexpr float kLeastVote = 0.01F;  // what weighs less has none
+constexpr int kRounds = 2;           // of the robust mean
+
+/// What samples that agree say.
+struct Agreement {
+    Vector2f sum_px = Vector2f::Zero();  ///< weighted
+    float weight = 0;
+};
+
+/// In a fixed order.
+float SumOf(const cv::v_float32x4& lanes) {
+    std::array<float, DetailField::Neighbours::kBlock> of;
+    cv::v_store(of.data(), lanes);
+    return (of[0] + of[1]) + (of[2] + of[3]);
+}
+
+/// Weights samples by how near they are to `mean`; `scale`: what a squared pixel counts.
+Agreement Agree(const DetailField::Neighbours& around, const Vector2f& mean,
+                const Vector2f& scale) {
+    const cv::v_float32x4 one = cv::v_setall_f32(1);
+    cv::v_float32x4 weight = cv::v_setzero_f32();
+    cv::v_float32x4 sum_x = cv::v_setzero_f32();
+    cv::v_float32x4 sum_y = cv::v_setzero_f32();
+    for (int i = 0; i < around.count; i += DetailField::Neighbours::kBlock) {
+        const cv::v_float32x4 x = cv::v_load(around.x_px.data() + i);
+        const cv::v_float32x4 y = cv::v_load(around.y_px.data() + i);
+        const cv::v_float32x4 off_x = x - cv::v_setall_f32(mean.x());
+        const cv::v_float32x4 off_y = y - cv::v_setall_f32(mean.y());
+        const cv::v_float32x4 ratio = cv::v_setall_f32(scale.x()) * off_x * off_x +
+                                      cv::v_setall_f32(scale.y()) * off_y * off_y;
+        const cv::v_float32x4 fitting =
+            cv::v_load(around.weight.data() + i) / ((one + ratio) * (one + ratio));
+        const cv::v_float32x4 used = fitting & (ratio <= cv::v_setall_f32(4));
+        weight = weight + used;
+        sum_x = sum_x + used * x;
+        sum_y = sum_y + used * y;
+    }
+    return {{SumOf(sum_x), SumOf(sum_y)}, SumOf(weight)};
+}
 
 ScanlineFit ScanlinesOver(const Projection& canvas, const DetailFieldOptions& options) {
     const int spacing_px = CornerSpacing_px(canvas);
@@ -29,6 +69,8 @@ DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& opt
       scanlines_{{ScanlinesOver(canvas, options), ScanlinesOver(canvas, options)}},
       wanted_(canvas, Vector2f::Zero()),
       support_(canvas, 0),
+      neighbours_share_(canvas, 0),
+      smooth_(canvas, Vector2f::Zero()),
       misses_(canvas, Vector2f::Zero()),
       detail_(canvas, Vector2f::Zero()),
       doubt_px_(canvas, static_cast<float>(options.unknown_px)) {
@@ -80,8 +122,8 @@ void DetailField::Fit(Overlap overlap, const VertexField& discrepancy) {
             Settle(row, col, range, sign * scanlines.At(row, col - range.first));
     }
     Subtract(discrepancy, range);
-    for (int sweep = 0; sweep < options_.sweeps; ++sweep) Sweep(range);
-    Doubt(discrepancy, range);
+    Smooth(range);
+    Doubt(range);
 }
 
 /// The columns that have samples.
@@ -100,48 +142,57 @@ DetailField::Range DetailField::FindRange(Overlap overlap) const {
 
 /// Each sample for the four corners round it.
 void DetailField::Vote(const Range& range, float sign, ScanlineFit& fit) const {
-    const auto vote = [&](int row, int col, const Sample& s, float share) {
+    const auto vote = [&](int row, int col, const ScanlineFit::Ballot& ballot, float weight) {
         if (row < 0 || row >= detail_.rows() || col < range.first || col > range.last) return;
-        fit.Vote(row, col - range.first, sign * s.e_px.x(), s.weight * share);
+        fit.Vote(row, col - range.first, ballot, weight);
     };
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
             for (const Sample& s : samples_[Index(row, col)]) {
+                if (s.weight < kLeastVote) continue;
+                const ScanlineFit::Ballot ballot = fit.BallotFor(sign * s.e_px.x());
                 const Vector2f share = s.off_px.cwiseAbs() / spacing_px_;
                 const int down = s.off_px.y() > 0 ? 1 : -1;
                 const int across = s.off_px.x() > 0 ? 1 : -1;
-                vote(row, col, s, (1 - share.x()) * (1 - share.y()));
-                vote(row, col + across, s, share.x() * (1 - share.y()));
-                vote(row + down, col, s, (1 - share.x()) * share.y());
-                vote(row + down, col + across, s, share.x() * share.y());
+                const float beside = s.weight * share.x();
+                const float here = s.weight - beside;
+                vote(row, col, ballot, here * (1 - share.y()));
+                vote(row, col + across, ballot, beside * (1 - share.y()));
+                vote(row + down, col, ballot, here * share.y());
+                vote(row + down, col + across, ballot, beside * share.y());
             }
         }
     }
 }
 
-DetailField::Neighbours DetailField::Around(int row, int col, const Range& range) const {
-    const auto spread_px2 = static_cast<float>(2 * options_.spread_px * options_.spread_px);
-    Neighbours around;
+/// Leaves out what is too far from the corner to count.
+void DetailField::Gather(int row, int col, const Range& range, Neighbours& around) const {
+    const auto reach_px2 = static_cast<float>(options_.reach_px * options_.reach_px);
+    around.count = 0;
     for (int r = std::max(0, row - 1); r <= std::min(detail_.rows() - 1, row + 1); ++r) {
         for (int c = std::max(range.first, col - 1); c <= std::min(range.last, col + 1); ++c) {
             const Vector2f from{spacing_px_ * static_cast<float>(c - col),
                                 spacing_px_ * static_cast<float>(r - row)};
             for (const Sample& s : samples_[Index(r, c)]) {
-                around.x_px[around.count] = s.e_px.x();
-                around.y_px[around.count] = s.e_px.y();
-                around.weight[around.count] =
-                    s.weight * std::exp(-(s.off_px + from).squaredNorm() / spread_px2);
-                ++around.count;
+                const float nearness = 1 - (s.off_px + from).squaredNorm() / reach_px2;
+                if (nearness <= 0) continue;
+                const auto i = static_cast<std::size_t>(around.count++);
+                around.x_px[i] = s.e_px.x();
+                around.y_px[i] = s.e_px.y();
+                around.weight[i] = s.weight * nearness * nearness;
             }
         }
     }
-    return around;
+    for (std::size_t i = 0; i < Neighbours::kBlock; ++i) {
+        const std::size_t beyond = static_cast<std::size_t>(around.count) + i;
+        around.x_px[beyond] = around.y_px[beyond] = around.weight[beyond] = 0;
+    }
 }
 
 /// Robust mean of the samples that agree with the value in x that the scanlines found.
 void DetailField::Settle(int row, int col, const Range& range, float start_px) {
-    const Neighbours around = Around(row, col, range);
-    Neighbours::List weight;
+    Neighbours around;
+    Gather(row, col, range, around);
     Vector2f mean{start_px, 0};
     float support = 0;
     for (int round = 0; round < kRounds; ++round) {
@@ -149,19 +200,10 @@ void DetailField::Settle(int row, int col, const Range& range, float start_px) {
             static_cast<float>(round == 0 ? options_.scanlines.tolerance_px : options_.outlier_px);
         const float across = 1 / (scale_px * scale_px);
         const float down = round == 0 ? 0.04F * across : across;  // the start says nothing of y
-        for (Eigen::Index i = 0; i < around.count; ++i) {
-            const float x_px = around.x_px[i] - mean.x();
-            const float y_px = around.y_px[i] - mean.y();
-            const float ratio = across * x_px * x_px + down * y_px * y_px;
-            const float fitting = around.weight[i] / ((1 + ratio) * (1 + ratio));
-            weight[i] = ratio > 4 ? 0 : fitting;
-        }
-        const auto used = weight.head(around.count);
-        support = used.sum();
+        const Agreement agreement = Agree(around, mean, {across, down});
+        support = agreement.weight;
         if (support <= 0) break;
-        mean = Vector2f{(used * around.x_px.head(around.count)).sum(),
-                        (used * around.y_px.head(around.count)).sum()} /
-               support;
+        mean = agreement.sum_px / support;
     }
     wanted_.at(row, col) = mean;
     support_.at(row, col) = std::max(support, kLeastSupport);
@@ -170,31 +212,44 @@ void DetailField::Settle(int row, int col, const Range& range, float start_px) {
 void DetailField::Subtract(const VertexField& discrepancy, const Range& range) {
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
-            wanted_.at(row, col) -=
-                algo::Sample(mesh_, discrepancy, detail_.Pixel(row, col)).cast<float>();
+            Vector2f& smooth = smooth_.at(row, col);
+            smooth = algo::Sample(mesh_, discrepancy, detail_.Pixel(row, col)).cast<float>();
+            wanted_.at(row, col) -= smooth;
             detail_.at(row, col) = wanted_.at(row, col);
         }
     }
 }
 
-/// Gauss-Seidel on sum support |u - wanted|^2 + smoothness |grad u|^2.
-void DetailField::Sweep(const Range& range) {
+/// Minimises sum support |u - wanted|^2 + smoothness |grad u|^2 (Gauss-Seidel).
+void DetailField::Smooth(const Range& range) {
     const auto smoothness = static_cast<float>(options_.smoothness);
     for (int row = 1; row + 1 < detail_.rows(); ++row) {
         for (int col = range.first + 1; col < range.last; ++col) {
-            const Vector2f around = detail_.at(row, col - 1) + detail_.at(row, col + 1) +
-                                    detail_.at(row - 1, col) + detail_.at(row + 1, col);
             const float support = support_.at(row, col);
-            detail_.at(row, col) =
-                (smoothness * around + support * wanted_.at(row, col)) / (4 * smoothness + support);
+            const float share = smoothness / (4 * smoothness + support);
+            neighbours_share_.at(row, col) = share;
+            wanted_.at(row, col) *= 1 - 4 * share;
+        }
+    }
+    for (int sweep = 0; sweep < options_.sweeps; ++sweep) Sweep(range);
+}
+
+void DetailField::Sweep(const Range& range) {
+    for (int row = 1; row + 1 < detail_.rows(); ++row) {
+        for (int col = range.first + 1; col < range.last; ++col) {
+            const float share = neighbours_share_.at(row, col);
+            const Vector2f rest = wanted_.at(row, col) +
+                                  share * (detail_.at(row, col + 1) + detail_.at(row - 1, col) +
+                                           detail_.at(row + 1, col));
+            detail_.at(row, col) = rest + share * detail_.at(row, col - 1);
         }
     }
 }
 
-void DetailField::Doubt(const VertexField& discrepancy, const Range& range) {
+void DetailField::Doubt(const Range& range) {
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col)
-            misses_.at(row, col) = MissesAt(discrepancy, row, col);
+            misses_.at(row, col) = MissesAt(row, col);
     }
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
@@ -210,10 +265,9 @@ void DetailField::Doubt(const VertexField& discrepancy, const Range& range) {
 }
 
 /// How far the samples nearest to a corner are off, weighted, and their weights.
-Vector2f DetailField::MissesAt(const VertexField& discrepancy, int row, int col) const {
+Vector2f DetailField::MissesAt(int row, int col) const {
     constexpr float kLeastWeight = 0.2F;  // what is hard to match is in doubt, too
-    const Vector2f e = detail_.at(row, col) +
-                       algo::Sample(mesh_, discrepancy, detail_.Pixel(row, col)).cast<float>();
+    const Vector2f e = detail_.at(row, col) + smooth_.at(row, col);
     Vector2f misses = Vector2f::Zero();
     for (const Sample& s : samples_[Index(row, col)]) {
         const float weight = std::max(kLeastWeight, s.weight);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "algo/corner_grid.hpp"
@@ -14,7 +15,7 @@ namespace hitchview::algo {
 
 struct DetailFieldOptions {
     double kappa = 0.5;         ///< as of the stitching field
-    double spread_px = 5;       ///< of the samples that make up a corner's value
+    double reach_px = 14;       ///< a sample this far from a corner tells nothing of it
     double outlier_px = 2;      ///< a sample this far off its corner's value counts a quarter
     double smoothness = 0.05;   ///< of the membrane, against a corner with one full sample
     int sweeps = 6;             ///< of the membrane
@@ -45,22 +46,24 @@ class DetailField {
     /// How far the samples round a corner are off the result on average, px; unknown_px without.
     [[nodiscard]] const CornerScalars& doubt_px() const { return doubt_px_; }
 
+    static constexpr std::size_t kMaxSamples = 12;  ///< of a corner
+    /// Samples of a corner and of the eight round it, and a block of nothing.
+    struct Neighbours {
+        static constexpr std::size_t kBlock = 4;  ///< handled at once
+        using List = std::array<float, 9 * kMaxSamples + kBlock>;
+        List x_px;  ///< discrepancy
+        List y_px;
+        List weight;  ///< less where far from the corner
+        int count;
+    };
+
  private:
     struct Sample {
         Eigen::Vector2f off_px;  ///< from the corner
         Eigen::Vector2f e_px;    ///< discrepancy
         float weight;
     };
-    static constexpr std::size_t kMaxSamples = 12;
     using Samples = FixedVector<Sample, kMaxSamples>;
-    /// The samples of a corner and of the eight round it.
-    struct Neighbours {
-        using List = Eigen::Array<float, 9 * kMaxSamples, 1>;
-        List x_px;  ///< discrepancy
-        List y_px;
-        List weight;  ///< less where far from the corner
-        Eigen::Index count = 0;
-    };
     /// Columns of corners, both ends included.
     struct Range {
         int first = 0;
@@ -72,10 +75,11 @@ class DetailField {
     void Vote(const Range& range, float sign, ScanlineFit& fit) const;
     void Settle(int row, int col, const Range& range, float start_px);
     void Subtract(const VertexField& discrepancy, const Range& range);
+    void Smooth(const Range& range);
     void Sweep(const Range& range);
-    void Doubt(const VertexField& discrepancy, const Range& range);
-    [[nodiscard]] Eigen::Vector2f MissesAt(const VertexField& discrepancy, int row, int col) const;
-    [[nodiscard]] Neighbours Around(int row, int col, const Range& range) const;
+    void Doubt(const Range& range);
+    [[nodiscard]] Eigen::Vector2f MissesAt(int row, int col) const;
+    void Gather(int row, int col, const Range& range, Neighbours& around) const;
     [[nodiscard]] std::size_t Index(int row, int col) const {
         return static_cast<std::size_t>(row * detail_.cols() + col);
     }
@@ -86,9 +90,11 @@ class DetailField {
     DetailFieldOptions options_;
     std::vector<Samples> samples_;  // of each corner: those nearer to it than to others
     PerOverlap<ScanlineFit> scanlines_;
-    CornerField wanted_;     // the discrepancy, then its rest
-    CornerScalars support_;  // weight of the samples that agree with it
-    CornerField misses_;     // weighted sum and weight of each corner
+    CornerField wanted_;              // the discrepancy, then its rest, then its share
+    CornerScalars support_;           // weight of the samples that agree with it
+    CornerScalars neighbours_share_;  // of each of four, in the membrane
+    CornerField smooth_;              // the mesh's part of the discrepancy
+    CornerField misses_;              // weighted sum and weight of each corner
     CornerField detail_;
     CornerScalars doubt_px_;
 };

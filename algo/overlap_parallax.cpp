@@ -1,11 +1,13 @@
 #include "algo/overlap_parallax.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "algo/feature_mask.hpp"
 #include "algo/match_refinement.hpp"
+#include "algo/multiversion.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -18,25 +20,61 @@ using Cost = SemiGlobalMatching::Cost;
 /// Where one view shows nothing, all distances are alike.
 constexpr Cost kUnseen = 20;
 
+/// More than signatures can differ.
+constexpr Cost kNoSignature = 64;
+
 int NodesOver(int length_px, int pitch_px) {
     return (length_px + pitch_px - 1) / pitch_px;
 }
 
-/// Number of set bits in each nibble.
-std::uint16_t CountInNibbles(std::uint16_t word) {
-    const auto pairs = static_cast<std::uint16_t>(word - (word >> 1U & 0x5555U));
-    return static_cast<std::uint16_t>((pairs & 0x3333U) + (pairs >> 2U & 0x3333U));
+/// Where things are in a picture: row by row.
+struct Picture {
+    int width_px;
+    float right_px;  ///< the last column
+    float bottom_px;
+};
+
+/// Places of the labels of a curve. What lies outside the picture is at its border.
+HV_MULTIVERSION
+void PlaceLabels(const OverlapParallax::Curve& curve, const Picture& picture, int labels,
+                 int* __restrict places) {
+    const float x0 = curve.start.x() + 0.5F;
+    const float y0 = curve.start.y() + 0.5F;
+    const float x1 = curve.linear.x();
+    const float y1 = curve.linear.y();
+    const float x2 = curve.square.x();
+    const float y2 = curve.square.y();
+    const Picture in = picture;
+    for (int k = 0; k < labels; ++k) {
+        const auto at = static_cast<float>(k);
+        const float x = x0 + at * (x1 + at * x2);
+        const float y = y0 + at * (y1 + at * y2);
+        const auto u = static_cast<int>(std::min(std::max(x, 0.0F), in.right_px));
+        const auto v = static_cast<int>(std::min(std::max(y, 0.0F), in.bottom_px));
+        places[k] = v * in.width_px + u;
+    }
 }
 
-/// Number of set bits in three words: in the sum of their bits at each place, a two-digit number.
-std::uint16_t CountBits(std::uint16_t a, std::uint16_t b, std::uint16_t c) {
-    const auto one_of_two = static_cast<std::uint16_t>(a ^ b);
-    const auto ones = static_cast<std::uint16_t>(one_of_two ^ c);
-    const auto twos = static_cast<std::uint16_t>((a & b) | (one_of_two & c));
-    const auto nibbles =
-        static_cast<std::uint16_t>(CountInNibbles(ones) + 2U * CountInNibbles(twos));
-    const auto bytes = static_cast<std::uint16_t>((nibbles & 0x0F0FU) + (nibbles >> 4U & 0x0F0FU));
-    return static_cast<std::uint16_t>((bytes + (bytes >> 8U)) & 0xFFU);
+/// How many bits of the signatures at the places differ from those of `here`; kNoSignature and more
+/// where there is none.
+HV_MULTIVERSION
+void CountDifferences(const std::uint64_t* __restrict signatures, const int* __restrict places,
+                      std::uint64_t here, int labels, Cost* __restrict differences) {
+    for (int k = 0; k < labels; ++k) {
+        const std::uint64_t difference = here ^ signatures[places[k]];
+        differences[k] = static_cast<Cost>(static_cast<std::uint64_t>(std::popcount(difference)) +
+                                           (difference >> 63U << 6U));
+    }
+}
+
+/// From how the signatures differ.
+HV_MULTIVERSION
+void RateLabels(const Cost* __restrict bias, int labels, Cost* __restrict cost) {
+    for (int k = 0; k < labels; ++k) {
+        const auto biased = static_cast<Cost>(cost[k] + bias[k]);
+        cost[k] =
+            cost[k] >= kNoSignature ? kUnseen : std::min(biased, SemiGlobalMatching::kDearest);
+    }
 }
 
 }  // namespace
@@ -62,11 +100,10 @@ OverlapParallax::OverlapParallax(const PerUnit<UnitGeometry>& geometry,
       matching_(NodesOver(views[Unit::kTractor]->height_px(), kRowPitch_px), max_cols_,
                 options.labels, options.matching),
       matches_(static_cast<std::size_t>(matching_.rows() * max_cols_)) {
-    differences_.fill(std::vector<std::uint16_t>(bias_.size()));
     const double surface = options_.beyond_per_m / Span_per_m() * (options_.labels - 1);
     for (int k = 0; k < options_.labels; ++k) {
         bias_[static_cast<std::size_t>(k)] =
-            static_cast<std::uint16_t>(options_.surface_bias * std::abs(k - surface));
+            static_cast<Cost>(options_.surface_bias * std::abs(k - surface));
     }
     LookOut();
 }
@@ -203,50 +240,15 @@ void OverlapParallax::CompareNode(int row, int col) {
         std::fill(cost, cost + options_.labels, kUnseen);
         return;
     }
-    LookAlong(curve, census_[Unit::kTractor].At(x, y));
-    RateLabels(cost);
-}
-
-/// From how the signatures differ.
-void OverlapParallax::RateLabels(Cost* __restrict cost) const {
-    const int labels = options_.labels;
-    const std::uint16_t* bias = bias_.data();
-    const std::uint16_t* a = differences_[0].data();
-    const std::uint16_t* b = differences_[1].data();
-    const std::uint16_t* c = differences_[2].data();
-    const std::uint16_t* none = differences_[3].data();
-    for (int k = 0; k < labels; ++k) {
-        const auto seen = static_cast<std::uint16_t>(CountBits(a[k], b[k], c[k]) + bias[k]);
-        const std::uint16_t rated = std::min<std::uint16_t>(seen, SemiGlobalMatching::kDearest);
-        cost[k] = static_cast<Cost>(none[k] != 0 ? kUnseen : rated);
-    }
-}
-
-/// Signatures along a curve against that of the node. What lies outside the picture is looked up at
-/// its border, where there are none.
-void OverlapParallax::LookAlong(const Curve& curve, std::uint64_t here) {
-    const int width = views_[Unit::kTrailer]->width_px();
-    const auto right = static_cast<float>(width - 1);
-    const auto bottom = static_cast<float>(views_[Unit::kTrailer]->height_px() - 1);
-    const int labels = options_.labels;
-    int* places = places_.data();
-    for (int k = 0; k < labels; ++k) {
-        const auto at = static_cast<float>(k);
-        const float x = curve.start.x() + at * (curve.linear.x() + at * curve.square.x()) + 0.5F;
-        const float y = curve.start.y() + at * (curve.linear.y() + at * curve.square.y()) + 0.5F;
-        const auto u = static_cast<int>(std::min(std::max(x, 0.0F), right));
-        const auto v = static_cast<int>(std::min(std::max(y, 0.0F), bottom));
-        places[k] = v * width + u;
-    }
-    const std::uint64_t* signatures = census_[Unit::kTrailer].data();
-    auto& [first, second, third, fourth] = differences_;
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-        const std::uint64_t difference = here ^ signatures[places[k]];
-        first[k] = static_cast<std::uint16_t>(difference);
-        second[k] = static_cast<std::uint16_t>(difference >> 16U);
-        third[k] = static_cast<std::uint16_t>(difference >> 32U);
-        fourth[k] = static_cast<std::uint16_t>(difference >> 48U);
-    }
+    const Census& there = census_[Unit::kTrailer];
+    const int width_px = views_[Unit::kTrailer]->width_px();
+    const int height_px = views_[Unit::kTrailer]->height_px();
+    PlaceLabels(curve,
+                {width_px, static_cast<float>(width_px - 1), static_cast<float>(height_px - 1)},
+                options_.labels, places_.data());
+    CountDifferences(there.data(), places_.data(), census_[Unit::kTractor].At(x, y),
+                     options_.labels, cost);
+    RateLabels(bias_.data(), options_.labels, cost);
 }
 
 void OverlapParallax::TakeAnswers(const PerUnit<MatchView>& views) {

@@ -40,6 +40,16 @@ struct ParallaxMatch {
 /// at construction; an object belongs to one thread at a time.
 class OverlapParallax {
  public:
+    /// Trailer px by label k: start + k linear + k^2 square.
+    struct Curve {
+        Eigen::Vector2f start = Eigen::Vector2f::Zero();
+        Eigen::Vector2f linear = Eigen::Vector2f::Zero();
+        Eigen::Vector2f square = Eigen::Vector2f::Zero();
+        bool known = false;
+        [[nodiscard]] Eigen::Vector2f At(float k) const {
+            return start + k * (linear + k * square);
+        }
+    };
     static constexpr int kPitch_px = 2;     ///< of the nodes in a row, analysis px
     static constexpr int kRowPitch_px = 3;  ///< of the rows of nodes
 
@@ -59,16 +69,6 @@ class OverlapParallax {
 
  private:
     static constexpr int kCurvePitch_px = 8;
-    /// Trailer px by label k: start + k linear + k^2 square.
-    struct Curve {
-        Eigen::Vector2f start = Eigen::Vector2f::Zero();
-        Eigen::Vector2f linear = Eigen::Vector2f::Zero();
-        Eigen::Vector2f square = Eigen::Vector2f::Zero();
-        bool known = false;
-        [[nodiscard]] Eigen::Vector2f At(float k) const {
-            return start + k * (linear + k * square);
-        }
-    };
     /// What the tractor sees at a node of the curves, wherever the trailer is.
     struct Sight {
         Eigen::Vector3d ray;
@@ -85,8 +85,6 @@ class OverlapParallax {
     [[nodiscard]] std::pair<int, int> TrailerColumns() const;
     void Compare(const PerUnit<MatchView>& views);
     void CompareNode(int row, int col);
-    void LookAlong(const Curve& curve, std::uint64_t here);
-    void RateLabels(SemiGlobalMatching::Cost* cost) const;
     [[nodiscard]] bool HasSignature(int x, int y) const {
         return (census_[Unit::kTractor].At(x, y) & Census::kNone) == 0;
     }
@@ -112,9 +110,8 @@ class OverlapParallax {
     std::vector<Sight> sights_;
     std::vector<Curve> curves_;
     PerUnit<Census> census_;
-    std::vector<std::uint16_t> bias_;  // of each label, towards the alignment surface
-    std::vector<int> places_;          // of the labels of one node in the trailer's census
-    std::array<std::vector<std::uint16_t>, 4> differences_;  // there: signatures, in quarters
+    std::vector<SemiGlobalMatching::Cost> bias_;  // of each label, towards the alignment surface
+    std::vector<int> places_;  // of the labels of one node in the trailer's census
     int max_cols_;
     int left_px_ = 0;  // of the first column of nodes
     SemiGlobalMatching matching_;

@@ -19,6 +19,7 @@ PictureMap::PictureMap(const Projection& from, const Projection& to)
     : to_(to),
       to_mesh_(to),
       pitch_px_(PitchFor(from)),
+      nodes_per_px_(1.0 / pitch_px_),
       rows_(from.height_px / pitch_px_ + 2),
       cols_(from.width_px / pitch_px_ + 2),
       nodes_(static_cast<std::size_t>(rows_ * cols_), Vector2d::Zero()) {
@@ -62,8 +63,8 @@ void PictureMap::Unwrap() {
 }
 
 Vector2d PictureMap::At(const Vector2d& pixel) const {
-    const double u = pixel.x() / pitch_px_;
-    const double v = pixel.y() / pitch_px_;
+    const double u = pixel.x() * nodes_per_px_;
+    const double v = pixel.y() * nodes_per_px_;
     const int col = std::clamp(static_cast<int>(u), 0, cols_ - 2);
     const int row = std::clamp(static_cast<int>(v), 0, rows_ - 2);
     const double s = u - col;

@@ -37,6 +37,7 @@ class PictureMap {
     Projection to_;
     Mesh to_mesh_;
     int pitch_px_;
+    double nodes_per_px_;
     int rows_;
     int cols_;
     std::vector<Eigen::Vector3d> rays_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -23,12 +24,24 @@ struct ScanlineFitOptions {
 class ScanlineFit {
  public:
     static constexpr int kValues = 64;
+    using Price = std::int16_t;  ///< in parts of a vote
 
+    /// What a vote for a value counts for the values near it.
+    struct Ballot {
+        static constexpr std::size_t kMost = 8;
+        int first = 0;  ///< of these values
+        int count = 0;
+        std::array<float, kMost> shares;
+    };
+
+    /// `tolerance_px` must be less than Ballot::kMost / 2 steps, and the votes of a node be no more
+    /// than 64.
     ScanlineFit(int rows, int max_cols, const ScanlineFitOptions& options);
 
     /// Begins anew, with the first `cols` columns.
     void Start(int cols);
-    void Vote(int row, int col, float value_px, float weight);
+    [[nodiscard]] Ballot BallotFor(float value_px) const;
+    void Vote(int row, int col, const Ballot& ballot, float weight);
     void Solve();
     [[nodiscard]] float At(int row, int col) const {
         return ValueOf(answer_[static_cast<std::size_t>(row * max_cols_ + col)]);
@@ -41,23 +54,25 @@ class ScanlineFit {
     [[nodiscard]] float ValueOf(int k) const {
         return static_cast<float>(options_.lowest_px + options_.step_px * k);
     }
-    void Listen(int col, int down);
+    void Listen(int down);
     void SolveRow(int row);
-    void Reach(int row, int col);
-    [[nodiscard]] int Before(int col, int k) const;
-    /// Prices of the cheapest ways along a row to the values of a node.
-    [[nodiscard]] std::size_t PriceIndex(int col) const {
-        return static_cast<std::size_t>(col * (kValues + 2 * options_.most_steps) +
-                                        options_.most_steps);
+    [[nodiscard]] int Before(int col, int k);
+    /// Prices of the cheapest ways along a row to the values of a node, less the least of them;
+    /// between values that nobody takes.
+    [[nodiscard]] Price* PricesOf(int col) {
+        const int at = col * (kValues + 2 * options_.most_steps) + options_.most_steps;
+        return price_.data() + at;
     }
 
     int rows_;
     int max_cols_;
     int cols_ = 0;
     ScanlineFitOptions options_;
-    std::vector<float> cost_;   // less votes: less than 0
-    std::vector<float> heard_;  // from above and below
-    std::vector<float> price_;  // between values that nobody takes
+    Price change_;              // of one step between neighbours in a row
+    std::vector<Price> cost_;   // less votes: less than 0
+    std::vector<Price> heard_;  // from above and below
+    std::vector<Price> wish_;   // of the rows before, of each column
+    std::vector<Price> price_;
     std::vector<std::int8_t> answer_;
 };
 

@@ -5,20 +5,147 @@
 #include <cstdlib>
 #include <limits>
 
+#include "algo/multiversion.hpp"
+
 namespace hitchview::algo {
 namespace {
 
+using Answer = SemiGlobalMatching::Answer;
 using Cost = SemiGlobalMatching::Cost;
 using Sum = SemiGlobalMatching::Sum;
 
+/// Labels are searched in blocks of so many.
+constexpr int kBlock = 16;
 /// Dearer than any path, which costs at most kDearest and a jump; one step more does not overflow.
 constexpr Cost kNever = 240;
+constexpr Sum kNeverSum = std::numeric_limits<Sum>::max();
 
-/// Of the labels from `first` to before `end`.
-Sum Least(const Sum* sum, int first, int end) {
-    Sum least = std::numeric_limits<Sum>::max();
-    for (int k = first; k < end; ++k) least = std::min(least, sum[k]);
+constexpr int kPaths = 4;  // in each of two directions
+
+constexpr int PathStride(int labels) {
+    return labels + 3;
+}
+
+/// The way to a node from the one before on a path.
+struct Way {
+    const Cost* before;  ///< costs of the labels there, then of none, then the least of them
+    int jump_cost;
+};
+
+/// A row of nodes; each pointer is to the node at its left end.
+struct Line {
+    const Cost* costs;
+    Sum* sums;
+    const std::uint8_t* grey;
+    const std::uint8_t* grey_before;  ///< of the row that was swept before
+    Cost* paths;  ///< kPaths of each node: the labels between two that nobody takes, and their
+                  ///< minimum; nodes beyond the border have costs of 0
+    const Cost* paths_before;
+};
+
+/// What is alike at all nodes.
+struct Terms {
+    int cols;
+    int labels;
+    int down;  ///< 1: from the top and the left, -1: from the bottom and the right
+    Cost step;
+    const Cost* jumps;  ///< by difference of grey
+};
+
+/// Cost of label `k` by way of the node before, less the minimum there, which only keeps the
+/// numbers small.
+inline Cost Extended(const Cost* before, Cost least, Cost jump, Cost own, Cost step, int k) {
+    const auto beside = static_cast<Cost>(std::min(before[k - 1], before[k + 1]) + step);
+    const Cost cheapest = std::min(std::min(before[k], beside), jump);
+    return static_cast<Cost>(own + cheapest - least);
+}
+
+/// Extends two paths to a node and adds them to its sums; `kept`: the bits of those that count.
+HV_MULTIVERSION
+void ExtendTwo(const Cost* __restrict cost, const Way& a, const Way& b, Cost step, int labels,
+               Cost* __restrict to_a, Cost* __restrict to_b, Sum kept, Sum* __restrict sum) {
+    const Cost* __restrict before_a = a.before;
+    const Cost* __restrict before_b = b.before;
+    const Cost least_a = before_a[labels + 1];
+    const Cost least_b = before_b[labels + 1];
+    const auto jump_a = static_cast<Cost>(least_a + a.jump_cost);
+    const auto jump_b = static_cast<Cost>(least_b + b.jump_cost);
+    Cost lowest_a = kNever;
+    Cost lowest_b = kNever;
+    for (int k = 0; k < labels; ++k) {
+        const Cost at_a = Extended(before_a, least_a, jump_a, cost[k], step, k);
+        const Cost at_b = Extended(before_b, least_b, jump_b, cost[k], step, k);
+        to_a[k] = at_a;
+        to_b[k] = at_b;
+        lowest_a = std::min(lowest_a, at_a);
+        lowest_b = std::min(lowest_b, at_b);
+        sum[k] = static_cast<Sum>((sum[k] & kept) + at_a + at_b);
+    }
+    to_a[-1] = to_a[labels] = to_b[-1] = to_b[labels] = kNever;
+    to_a[labels + 1] = lowest_a;
+    to_b[labels + 1] = lowest_b;
+}
+
+void VisitNode(const Line& line, const Terms& terms, int col) {
+    const int stride = PathStride(terms.labels);
+    const auto way = [&](const Cost* paths, const std::uint8_t* grey, int from, int path) {
+        const Cost* before = paths + (from * kPaths + path) * stride;
+        const int edge = std::abs(int{line.grey[col]} - int{grey[from]});
+        return Way{before, terms.jumps[edge]};
+    };
+    const auto above = [&](int from, int path) {
+        return way(line.paths_before, line.grey_before, from, path);
+    };
+    const Cost* cost = line.costs + col * terms.labels;
+    Sum* sum = line.sums + col * terms.labels;
+    Cost* to = line.paths + col * kPaths * stride;
+    constexpr Sum kAll = -1;
+    const Sum kept = terms.down > 0 ? Sum{0} : kAll;  // the first sweep begins anew
+    ExtendTwo(cost, way(line.paths, line.grey, col - terms.down, 0), above(col - 1, 1), terms.step,
+              terms.labels, to, to + stride, kept, sum);
+    ExtendTwo(cost, above(col, 2), above(col + 1, 3), terms.step, terms.labels, to + 2 * stride,
+              to + 3 * stride, kAll, sum);
+}
+
+/// Paths from the row before and from one side.
+void SweepRow(const Line& line, const Terms& terms) {
+    for (int j = 0; j < terms.cols; ++j)
+        VisitNode(line, terms, terms.down > 0 ? j : terms.cols - 1 - j);
+}
+
+inline Sum Least(const Sum* sum, int labels) {
+    Sum least = kNeverSum;
+    for (int k = 0; k < labels; ++k) least = std::min(least, sum[k]);
     return least;
+}
+
+/// The first of the labels with this sum, which is there.
+inline int Find(const Sum* sum, int labels, Sum wanted) {
+    int block = 0;
+    while (block + kBlock < labels && Least(sum + block, kBlock) != wanted) block += kBlock;
+    while (sum[block] != wanted) ++block;
+    return block;
+}
+
+/// Of the minimum between labels; the best is at neither end.
+inline float FractionAt(const Sum* best) {
+    const auto left = static_cast<float>(best[-1] - *best);
+    const auto right = static_cast<float>(best[1] - *best);
+    return left + right > 0 ? 0.5F * (left - right) / (left + right) : 0;
+}
+
+/// From complete sums.
+HV_MULTIVERSION
+Answer AnswerFrom(const Sum* sum, int labels) {
+    Answer answer;
+    const Sum least = Least(sum, labels);
+    answer.label = Find(sum, labels, least);
+    const int after = std::min(labels, answer.label + 2);
+    const Sum rival = std::min(Least(sum, answer.label - 1), Least(sum + after, labels - after));
+    answer.lead = rival - least;
+    if (answer.label > 0 && answer.label + 1 < labels)
+        answer.fraction = FractionAt(sum + answer.label);
+    return answer;
 }
 
 }  // namespace
@@ -28,23 +155,16 @@ SemiGlobalMatching::SemiGlobalMatching(int rows, int max_cols, int labels,
     : rows_(rows),
       max_cols_(max_cols),
       labels_(labels),
-      stride_(labels + 3),
       options_(options),
-      grey_(Node(rows, 0)),
+      grey_(static_cast<std::size_t>(rows * (max_cols + 2))),
       costs_(At(rows, 0)),
       sums_(At(rows, 0)),
-      paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * stride_)) {
+      paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * PathStride(labels))) {
     for (std::size_t edge = 0; edge < jump_costs_.size(); ++edge) {
-        jump_costs_[edge] =
-            std::max(options.least_jump_cost, options.jump_cost * options.edge_grey /
-                                                  (options.edge_grey + static_cast<int>(edge)));
+        const int cost =
+            options.jump_cost * options.edge_grey / (options.edge_grey + static_cast<int>(edge));
+        jump_costs_[edge] = static_cast<Cost>(std::max(options.least_jump_cost, cost));
     }
-}
-
-void SemiGlobalMatching::Start(int cols) {
-    cols_ = cols;
-    for (int row = 0; row < rows_; ++row)
-        std::fill(sums_.data() + At(row, 0), sums_.data() + At(row, cols), Sum{0});
 }
 
 void SemiGlobalMatching::Solve() {
@@ -52,71 +172,26 @@ void SemiGlobalMatching::Solve() {
     SweepFrom(rows_ - 1, -1);
 }
 
-/// Paths from the row before and from one side.
+SemiGlobalMatching::Answer SemiGlobalMatching::AnswerAt(int row, int col) const {
+    return AnswerFrom(sums_.data() + At(row, col), labels_);
+}
+
+SemiGlobalMatching::Cost* SemiGlobalMatching::PathsOf(int line) {
+    const int first = (line * (max_cols_ + 2) + 1) * kPaths;
+    return paths_.data() + static_cast<std::ptrdiff_t>(first) * PathStride(labels_) + 1;
+}
+
 void SemiGlobalMatching::SweepFrom(int first_row, int down) {
     std::fill(paths_.begin(), paths_.end(), Cost{0});  // beyond the border every label is free
+    const Terms terms{cols_, labels_, down, static_cast<Cost>(options_.step_cost),
+                      jump_costs_.data()};
     for (int i = 0; i < rows_; ++i) {
-        for (int j = 0; j < cols_; ++j)
-            Visit(first_row + i * down, down > 0 ? j : cols_ - 1 - j, down, i % 2);
+        const int row = first_row + i * down;
+        const Line line{costs(row, 0),  sums_.data() + At(row, 0),
+                        GreyOf(row),    GreyOf(i > 0 ? row - down : row),
+                        PathsOf(i % 2), PathsOf(1 - i % 2)};
+        SweepRow(line, terms);
     }
-}
-
-void SemiGlobalMatching::Visit(int row, int col, int down, int line) {
-    const std::array<std::array<int, 2>, kPaths> before{
-        {{row, col - down}, {row - down, col - 1}, {row - down, col}, {row - down, col + 1}}};
-    const std::size_t at = At(row, col);
-    for (int p = 0; p < kPaths; ++p) {
-        const auto& [from_row, from_col] = before[static_cast<std::size_t>(p)];
-        Extend(costs_.data() + at, JumpCost(row, col, from_row, from_col),
-               PathAt(from_row == row ? line : 1 - line, from_col, p), PathAt(line, col, p));
-    }
-    AddPaths(PathAt(line, col, 0), sums_.data() + at);
-}
-
-int SemiGlobalMatching::JumpCost(int row, int col, int from_row, int from_col) const {
-    if (from_row < 0 || from_col < 0 || from_row >= rows_ || from_col >= cols_) return 0;
-    const int edge = std::abs(int{grey_[Node(row, col)]} - int{grey_[Node(from_row, from_col)]});
-    return jump_costs_[static_cast<std::size_t>(edge)];
-}
-
-/// To each label: its cost and the cheapest way from the node before, less the minimum there,
-/// which only keeps the numbers small.
-void SemiGlobalMatching::Extend(const Cost* __restrict cost, int jump_cost,
-                                const Cost* __restrict before, Cost* __restrict path) const {
-    const Cost least = before[labels_ + 1];
-    const auto step = static_cast<Cost>(options_.step_cost);
-    const auto jump = static_cast<Cost>(least + jump_cost);
-    Cost lowest = kNever;
-    for (int k = 0; k < labels_; ++k) {
-        const auto beside = static_cast<Cost>(std::min(before[k - 1], before[k + 1]) + step);
-        const Cost way = std::min(std::min(before[k], beside), jump);
-        path[k] = static_cast<Cost>(cost[k] + way - least);
-        lowest = std::min(lowest, path[k]);
-    }
-    path[-1] = path[labels_] = kNever;
-    path[labels_ + 1] = lowest;
-}
-
-void SemiGlobalMatching::AddPaths(const Cost* __restrict first_path, Sum* __restrict sum) const {
-    const Cost* second = first_path + stride_;
-    const Cost* third = second + stride_;
-    const Cost* fourth = third + stride_;
-    for (int k = 0; k < labels_; ++k)
-        sum[k] = static_cast<Sum>(sum[k] + first_path[k] + second[k] + third[k] + fourth[k]);
-}
-
-SemiGlobalMatching::Answer SemiGlobalMatching::AnswerAt(int row, int col) const {
-    const Sum* sum = sums_.data() + At(row, col);
-    const Sum* best = std::find(sum, sum + labels_, Least(sum, 0, labels_));
-    Answer answer;
-    answer.label = static_cast<int>(best - sum);
-    answer.lead =
-        std::min(Least(sum, 0, answer.label - 1), Least(sum, answer.label + 2, labels_)) - *best;
-    if (answer.label == 0 || answer.label == labels_ - 1) return answer;
-    const auto left = static_cast<float>(best[-1] - *best);
-    const auto right = static_cast<float>(best[1] - *best);
-    if (left + right > 0) answer.fraction = 0.5F * (left - right) / (left + right);
-    return answer;
 }
 
 }  // namespace hitchview::algo

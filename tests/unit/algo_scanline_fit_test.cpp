@@ -90,7 +90,8 @@ TEST(ScanlineFitTest, OfAllRowsWhoseNeighboursAreNearItFindsTheOneWithMostVotes)
         fit.Start(row.nodes());
         std::vector<int> labels;
         for (int col = 0; col < row.nodes(); ++col) {
-            for (const auto& vote : row.of(col)) fit.Vote(0, col, vote.value_px, vote.weight);
+            for (const auto& vote : row.of(col))
+                fit.Vote(0, col, fit.BallotFor(vote.value_px), vote.weight);
         }
         fit.Solve();
         for (int col = 0; col < row.nodes(); ++col) labels.push_back(LabelOf(fit.At(0, col)));
@@ -109,7 +110,8 @@ TEST(ScanlineFitTest, OfAllColumnsItFindsTheOneWithMostVotesWhereEdgesHaveABound
         const Chain column(3, seed);
         fit.Start(1);
         for (int row = 0; row < column.nodes(); ++row) {
-            for (const auto& vote : column.of(row)) fit.Vote(row, 0, vote.value_px, vote.weight);
+            for (const auto& vote : column.of(row))
+                fit.Vote(row, 0, fit.BallotFor(vote.value_px), vote.weight);
         }
         fit.Solve();
         std::vector<int> labels;
@@ -126,7 +128,7 @@ std::vector<float> RowWithNear(int first, int last, float near_px) {
     fit.Start(kCols);
     for (int col = 0; col < kCols; ++col) {
         const bool near = col >= first && col <= last;
-        fit.Vote(0, col, near ? near_px : 0, near ? 2 : 1);
+        fit.Vote(0, col, fit.BallotFor(near ? near_px : 0), near ? 2 : 1);
     }
     fit.Solve();
     std::vector<float> row;
@@ -151,11 +153,11 @@ TEST(ScanlineFitTest, AThinNearThingLeavesItsPlaceToWhatLiesBehindIt) {
 TEST(ScanlineFitTest, NothingIsLeftOfTheVotesBeforeTheStart) {
     ScanlineFit fit(2, 6, {});
     fit.Start(6);
-    for (int col = 0; col < 6; ++col) fit.Vote(1, col, 90, 5);
+    for (int col = 0; col < 6; ++col) fit.Vote(1, col, fit.BallotFor(90), 5);
     fit.Solve();
     ASSERT_EQ(fit.At(0, 3), 90);
     fit.Start(6);
-    for (int col = 0; col < 6; ++col) fit.Vote(0, col, -12, 1);
+    for (int col = 0; col < 6; ++col) fit.Vote(0, col, fit.BallotFor(-12), 1);
     fit.Solve();
     for (int row = 0; row < 2; ++row) {
         for (int col = 0; col < 6; ++col) EXPECT_EQ(fit.At(row, col), -12) << row << " " << col;
@@ -165,9 +167,9 @@ TEST(ScanlineFitTest, NothingIsLeftOfTheVotesBeforeTheStart) {
 TEST(ScanlineFitTest, AVoteBeyondAllValuesCountsForNone) {
     ScanlineFit fit(1, 1, {});
     fit.Start(1);
-    fit.Vote(0, 0, 1e4F, 50);
-    fit.Vote(0, 0, -1e4F, 50);
-    fit.Vote(0, 0, 27, 0.1F);
+    fit.Vote(0, 0, fit.BallotFor(1e4F), 50);
+    fit.Vote(0, 0, fit.BallotFor(-1e4F), 50);
+    fit.Vote(0, 0, fit.BallotFor(27), 0.1F);
     fit.Solve();
     EXPECT_EQ(fit.At(0, 0), 27);
 }
