@@ -111,7 +111,7 @@ SeamOptions SeamOptionsOf(const Projection& canvas) {
 DetailFieldOptions DetailOptions(const Projection& canvas, double kappa) {
     const double fineness = Fineness(canvas);
     DetailFieldOptions options{.kappa = kappa};
-    for (double* px : {&options.spread_px, &options.outlier_px, &options.most_doubt_px,
+    for (double* px : {&options.reach_px, &options.outlier_px, &options.most_doubt_px,
                        &options.unknown_px, &options.scanlines.lowest_px,
                        &options.scanlines.step_px, &options.scanlines.tolerance_px})
         *px *= fineness;
