@@ -248,8 +248,8 @@ struct DrivenRing {
 
 void MotionField(benchmark::State& state) {
     const DrivenRing ring;
-    const auto field =
-        std::make_unique<StabilizationMotionField>(ring.view, AnalysisOptions(ring.view).field);
+    const auto field = std::make_unique<StabilizationMotionField>(
+        ring.view, AnalysisOptions(ring.view, 0.5).field);
     IntraMotion motion;
     for (auto _ : state) field->Estimate(ring.features, ring.sights, motion);
     state.counters["inliers"] = motion.inliers;

@@ -200,7 +200,7 @@ TEST_F(PicturedPlanesTest, TheSeamGoesRoundWhatTheUnitsShowDifferently) {
         EXPECT_LT(SeamAt(row), 200);
     }
     for (int row = 1; row <= map_.block_rows(); ++row)
-        EXPECT_LE(std::abs(SeamAt(row) - SeamAt(row - 1)), ComposedMap::kBlock + 1e-9);
+        EXPECT_LE(std::abs(SeamAt(row) - SeamAt(row - 1)), map_.block_px() + 1e-9);
 }
 
 TEST_F(PicturedPlanesTest, WhatComesIntoTheSeamsWayMovesItWithoutAJump) {
