@@ -147,7 +147,8 @@ struct Case {
     Matrix3d M_canvas_camera;
 };
 
-/// Ordinary ones, steep ones, strongly reduced ones and pictures smaller than the kernel's window.
+/// Ordinary ones, steep ones, strongly reduced ones, pictures smaller than the kernel's window, and
+/// canvases so wide that the map's corners lie 16 px apart.
 std::vector<Case> Cases() {
     return {{{160, 96}, {202, 106}, Similarity(1.05, 0.02, 3.3, 2.6)},
             {{160, 96}, {202, 106}, Similarity(1, 0, 17, -9)},
@@ -157,7 +158,9 @@ std::vector<Case> Cases() {
             {{320, 192}, {80, 48}, Similarity(0.23, 0.1, 4, 3)},
             {{160, 96}, {480, 256}, Similarity(2.7, -0.05, 6, 20)},
             {{30, 18}, {64, 48}, Similarity(1.3, 0.05, 8.2, 7.9)},
-            {{4, 2}, {32, 16}, Similarity(3.1, 0, 2, 2)}};
+            {{4, 2}, {32, 16}, Similarity(3.1, 0, 2, 2)},
+            {{160, 96}, {2050, 106}, Similarity(1.05, 0.02, 1903.3, 2.6)},
+            {{160, 96}, {2064, 130}, Similarity(0.6, 1.5, 280.1, 10.4)}};
 }
 
 class CameraFormatsTest : public testing::TestWithParam<Format> {};
