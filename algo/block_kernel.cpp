@@ -6,6 +6,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algo/block_kernel.cpp"
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "algo/block_kernel-inl.hpp"
@@ -231,6 +232,7 @@ template <int kParts>
 HWY_INLINE void PlaceSource(BlockSource& source) {
     const CameraFrame& frame = source.camera->frame();
     PlaceBlock<8, kParts>(source.x, source.y, GridOf(frame.LumaSamples()), source.luma);
+    Prefetch<8, kParts>(LumaOf(frame), source.luma);
     if (!frame.has_chroma()) return;
     Corners x;
     Corners y;
@@ -239,6 +241,15 @@ HWY_INLINE void PlaceSource(BlockSource& source) {
         y[k] = frame.ChromaY(source.y[k]);
     }
     PlaceBlock<4, kParts>(x, y, GridOf(frame.ChromaSamples(0)), source.chroma);
+    if (!frame.is_packed()) Prefetch<4, kParts>(ChromaOf(frame), source.chroma);
+}
+
+/// Asks for what will be read: a processor foresees few of so many rows.
+template <int kSamples, int kParts>
+HWY_INLINE void Prefetch(const Samples& plane, const SampleWindows& windows) {
+    constexpr int kSegments = SegmentTable<kSamples, kParts>::kSegments;
+    for (std::size_t s = 0; s < kSegments; ++s)
+        hwy::Prefetch(plane.begin + windows.offset_bytes[s] + plane.stride_bytes);
 }
 
 /// Blocks of one size.

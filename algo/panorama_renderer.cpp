@@ -24,25 +24,30 @@ class StripPicture {
         const int width = std::min(kWidth, out.width_px - x);
         const int height = std::min(rows, out.height_px - y);
         const auto chroma_at = static_cast<std::ptrdiff_t>(y / 2) * out.chroma_stride_bytes + x / 2;
-        CopyRows(y_.data(), kWidth, width, height,
-                 out.y + static_cast<std::ptrdiff_t>(y) * out.y_stride_bytes + x,
-                 out.y_stride_bytes);
-        CopyRows(u_.data(), kWidth / 2, width / 2, height / 2, out.u + chroma_at,
-                 out.chroma_stride_bytes);
-        CopyRows(v_.data(), kWidth / 2, width / 2, height / 2, out.v + chroma_at,
-                 out.chroma_stride_bytes);
+        CopyRows<kWidth>(y_.data(), width, height,
+                         out.y + static_cast<std::ptrdiff_t>(y) * out.y_stride_bytes + x,
+                         out.y_stride_bytes);
+        CopyRows<kWidth / 2>(u_.data(), width / 2, height / 2, out.u + chroma_at,
+                             out.chroma_stride_bytes);
+        CopyRows<kWidth / 2>(v_.data(), width / 2, height / 2, out.v + chroma_at,
+                             out.chroma_stride_bytes);
     }
 
  private:
     static constexpr int kWidth = kStrip_px;
     static constexpr int kHeight = kMaxBlock_px;
 
-    static void CopyRows(const std::uint8_t* from, int from_stride_bytes, int bytes, int rows,
-                         std::uint8_t* to, int stride_bytes) {
+    template <int kBytes>
+    static void CopyRows(const std::uint8_t* from, int bytes, int rows, std::uint8_t* to,
+                         int stride_bytes) {
         for (int r = 0; r < rows; ++r) {
-            std::memcpy(to + static_cast<std::ptrdiff_t>(r) * stride_bytes,
-                        from + static_cast<std::ptrdiff_t>(r) * from_stride_bytes,
-                        static_cast<std::size_t>(bytes));
+            if (bytes == kBytes) {
+                std::memcpy(to, from, kBytes);
+            } else {
+                std::memcpy(to, from, static_cast<std::size_t>(bytes));
+            }
+            from += kBytes;
+            to += stride_bytes;
         }
     }
 
