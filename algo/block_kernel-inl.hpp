@@ -83,11 +83,13 @@ template <int kSamples>
 struct LaneTable {
     HWY_ALIGN std::uint16_t sample[32];    ///< of the segment
     HWY_ALIGN std::uint16_t second[32];    ///< all ones: of the second channel
+    HWY_ALIGN std::uint16_t bit[32];       ///< of the sample
     HWY_ALIGN std::uint8_t broadcast[64];  ///< bytes of the segment's value, of 16 bits
 
-    constexpr LaneTable() : sample(), second(), broadcast() {
+    constexpr LaneTable() : sample(), second(), bit(), broadcast() {
         for (int i = 0; i < 32; ++i) {
             sample[i] = static_cast<std::uint16_t>(i % kSamples);
+            bit[i] = static_cast<std::uint16_t>(1 << (i % kSamples));
             second[i] = i % kSegmentLanes < kSamples ? 0 : 0xFFFF;
             broadcast[2 * i] = static_cast<std::uint8_t>(i / kSegmentLanes * 2);
             broadcast[2 * i + 1] = static_cast<std::uint8_t>(i / kSegmentLanes * 2 + 1);
@@ -116,18 +118,38 @@ HWY_INLINE VU16 Broadcast(const T* eight, V8 index) {
     return hn::BitCast(du, hn::TableLookupBytes(all, index));
 }
 
+/// Which of eight segments' values segments s, s + 1... take.
+template <int kSamples>
+HWY_INLINE V8 BroadcastIndex(int s) {
+    const D8 d;
+    return hn::Add(hn::Load(d, kLaneTable<kSamples>.broadcast),
+                   hn::Set(d, static_cast<std::uint8_t>(2 * (s % kSegmentLanes))));
+}
+
+/// All ones in the lanes of segments s, s + 1... that are seen.
+template <int kSamples>
+HWY_INLINE VU16 SeenAt(const SampleWindows& windows, int s) {
+    const DU16 du;
+    const VU16 bit = hn::Load(du, kLaneTable<kSamples>.bit);
+    const VU16 seen =
+        Broadcast(windows.seen.data() + (s - s % kSegmentLanes), BroadcastIndex<kSamples>(s));
+    return hn::VecFromMask(du, hn::Eq(hn::And(seen, bit), bit));
+}
+
 /// What is linear along segments s, s + 1...; `kSamples` to a segment, then the first again.
 template <int kSamples>
 HWY_INLINE VU16 Along(const SegmentLines& lines, int s) {
-    const D8 d8;
     const DU16 du;
     const LaneTable<kSamples>& lanes = kLaneTable<kSamples>;
-    const V8 index = hn::Add(hn::Load(d8, lanes.broadcast),
-                             hn::Set(d8, static_cast<std::uint8_t>(2 * (s % kSegmentLanes))));
+    const V8 index = BroadcastIndex<kSamples>(s);
     const int eight = s - s % kSegmentLanes;
     return hn::Add(
         Broadcast(lines.first.data() + eight, index),
         hn::Mul(Broadcast(lines.step.data() + eight, index), hn::Load(du, lanes.sample)));
+}
+
+HWY_INLINE VU16 AtLeast0(VU16 with_sign) {
+    return hn::BitCast(DU16(), hn::Max(hn::BitCast(D16(), with_sign), hn::Zero(D16())));
 }
 
 /// What is read for segments s, s + 1..., 8.7 fixed point. Samples lie 1 << kLogStep bytes apart.
@@ -141,8 +163,14 @@ HWY_INLINE VU16 ReadSegments(const Samples& plane, const SampleWindows& windows,
     const VU16 byte = hn::Add(hn::Set(du, static_cast<std::uint16_t>(plane.first_byte)),
                               hn::And(hn::Load(du, lanes.second),
                                       hn::Set(du, static_cast<std::uint16_t>(plane.second_byte))));
-    const VU16 px = Along<kSamples>(windows.x, s);
+    VU16 px = Along<kSamples>(windows.x, s);
     VU16 py = Along<kSamples>(windows.y, s);
+    // Colour ends a little before the picture does; that of packed pixels has all of its rows.
+    if constexpr (kSamples < kSegmentLanes) px = AtLeast0(px);
+    if constexpr (kSamples < kSegmentLanes && kVectors == 1) {
+        const auto last_row = static_cast<std::uint16_t>((windows.rows - 1) << kPlaceBits);
+        py = hn::Min(AtLeast0(py), hn::Set(du, last_row));
+    }
     const VU16 whole = hn::ShiftRight<kPlaceBits>(px);
     const VU16 beside = hn::Min(hn::Add(whole, hn::Set(du, std::uint16_t{1})),
                                 hn::Set(du, std::uint16_t{kWindow - 1}));

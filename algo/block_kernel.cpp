@@ -5,8 +5,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algo/block_kernel.cpp"
-#include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #include "algo/block_kernel-inl.hpp"
@@ -72,6 +72,7 @@ struct LumaKind {
     static constexpr std::size_t kChannels = 1;
     static constexpr std::size_t kFirstShift = 0;
     static constexpr int kLogPackedStep = 1;
+    static constexpr std::uint8_t kEmpty = 0;
 
     static Samples Plane(const CameraFrame& frame) { return LumaOf(frame); }
     static const SampleWindows& Windows(const BlockSource& source) { return source.luma; }
@@ -95,6 +96,7 @@ struct ChromaKind {
     static constexpr std::size_t kChannels = 2;
     static constexpr std::size_t kFirstShift = 1;
     static constexpr int kLogPackedStep = 2;
+    static constexpr std::uint8_t kEmpty = 128;
 
     static Samples Plane(const CameraFrame& frame) { return ChromaOf(frame); }
     static const SampleWindows& Windows(const BlockSource& source) { return source.chroma; }
@@ -131,21 +133,98 @@ class Drawing {
         if (block.sources.size() == 1) {
             Read<Part::kWhole>(block.sources[0]);
         } else {
-            Read<Part::kFirst>(block.sources[0]);
-            for (std::size_t i = 1; i < block.sources.size(); ++i)
-                Read<Part::kAnother>(block.sources[i]);
-            for (int s = 0; s < kSegments; s += kVectorSegments)
-                StoreRounded<kLevelBits - 1>(hn::Load(D16(), sum_ + s * kSegmentLanes),
-                                             bytes_ + s * kSegmentLanes);
+            Blend();
         }
+        if (block.on_edge()) ClearUnseen();
         Kind::template Write<kParts>(block, bytes_, out);
     }
 
  private:
     static constexpr int kSegments = SegmentTable<Kind::kSamples, kParts>::kSegments;
+    static constexpr int kLanes = kSegments * kSegmentLanes;
     static constexpr int kNoColour = -1;
+    /// A little less than 1 << 15: rounded steps must not lead beyond the largest value.
+    static constexpr float kWholeShare = (1 << 15) - 16;
     /// Of a source in the block.
     enum class Part { kWhole, kFirst, kAnother };
+
+    void Blend() {
+        if (block_.on_edge()) SumWeights();
+        for (std::size_t i = 0; i < block_.sources.size(); ++i) {
+            const BlockSource& source = block_.sources[i];
+            if (block_.on_edge()) {
+                FindEdgeShares(source);
+            } else {
+                FindShares(source);
+            }
+            if (i == 0) {
+                Read<Part::kFirst>(source);
+            } else {
+                Read<Part::kAnother>(source);
+            }
+        }
+        for (int at = 0; at < kLanes; at += static_cast<int>(hn::Lanes(D16())))
+            StoreRounded<kLevelBits - 1>(hn::Load(D16(), sum_ + at), bytes_ + at);
+    }
+
+    void FindShares(const BlockSource& source) {
+        SegmentLines lines;
+        FindLines<Kind::kSamples, kParts>(FixedOf(source.weight, kWholeShare), lines);
+        for (int s = 0; s < kSegments; s += kVectorSegments)
+            hn::Store(Along<Kind::kSamples>(lines, s), DU16(), share_ + s * kSegmentLanes);
+    }
+
+    void SumWeights() {
+        std::fill_n(total_, kLanes, 0.0F);
+        for (const BlockSource& source : block_.sources) {
+            FindEdgeWeights(source);
+            for (int at = 0; at < kLanes; ++at) total_[at] += weight_[at];
+        }
+    }
+    void FindEdgeShares(const BlockSource& source) {
+        FindEdgeWeights(source);
+        for (int at = 0; at < kLanes; ++at) {
+            const float total = std::max(total_[at], 1e-12F);
+            share_[at] =
+                static_cast<std::uint16_t>(static_cast<int>(kWholeShare * (weight_[at] / total)));
+        }
+    }
+    /// What the source counts, where it is seen.
+    void FindEdgeWeights(const BlockSource& source) {
+        constexpr int kSamples = Kind::kSamples;
+        const auto& table = kSegmentTable<kSamples, kParts>;
+        const auto& seen = Kind::Windows(source).seen;
+        const Corners& corner = source.weight;
+        for (int s = 0; s < kSegments; ++s) {
+            const float down = static_cast<float>(table.down[s]) / 32;
+            const float left = corner[0] + down * (corner[2] - corner[0]);
+            const float across = corner[1] + down * (corner[3] - corner[1]) - left;
+            const float first = left + static_cast<float>(table.ahead[s]) / 32 * across;
+            const float step = across / (kSamples * kParts);
+            const unsigned bits = seen[static_cast<std::size_t>(s)];
+            for (int i = 0; i < kSegmentLanes; ++i) {
+                const int sample = i % kSamples;
+                const float value = first + step * static_cast<float>(sample);
+                weight_[s * kSegmentLanes + i] =
+                    (bits >> sample & 1U) != 0 ? std::max(value, 0.0F) : 0.0F;
+            }
+        }
+    }
+
+    void ClearUnseen() {
+        const DU16 du;
+        const hn::Rebind<std::uint8_t, DU16> d8;
+        const auto empty = hn::Set(d8, Kind::kEmpty);
+        for (int s = 0; s < kSegments; s += kVectorSegments) {
+            VU16 seen = hn::Zero(du);
+            for (const BlockSource& source : block_.sources)
+                seen = hn::Or(seen, SeenAt<Kind::kSamples>(Kind::Windows(source), s));
+            const auto mask =
+                hn::DemoteTo(d8, hn::BitCast(D16(), hn::ShiftRight<8>(seen)));  // 255 or 0
+            std::uint8_t* at = bytes_ + s * kSegmentLanes;
+            hn::Store(hn::Or(hn::And(mask, hn::Load(d8, at)), hn::AndNot(mask, empty)), d8, at);
+        }
+    }
 
     template <Part kPart>
     void Read(const BlockSource& source) {
@@ -163,18 +242,13 @@ class Drawing {
     HWY_NOINLINE void ReadAs(const BlockSource& source) {
         const CameraSampler::Tone tone = source.camera->tone();
         SegmentLines shift[Kind::kChannels];
-        SegmentLines weight;
         if (source.shifted) FindShift(source, shift);
-        // A little less than 1 << 15: rounded steps must not lead beyond the largest value.
-        constexpr float kWhole = (1 << 15) - 16;
-        if constexpr (kPart != Part::kWhole)
-            FindLines<Kind::kSamples, kParts>(FixedOf(source.weight, kWhole), weight);
         const Samples plane = Kind::Plane(source.camera->frame());
         const SampleWindows& windows = Kind::Windows(source);
         for (int s = 0; s < kSegments; s += kVectorSegments) {
             V16 levels = LevelsOf(tone, SamplesAt<kLogStep>(plane, windows, s));
             if (source.shifted) levels = hn::SaturatedAdd(levels, Kind::Shift(shift, s));
-            Add<kPart>(levels, weight, s);
+            Add<kPart>(levels, s * kSegmentLanes);
         }
     }
 
@@ -202,22 +276,24 @@ class Drawing {
     }
 
     template <Part kPart>
-    HWY_INLINE void Add(V16 levels, const SegmentLines& weight, int s) {
+    HWY_INLINE void Add(V16 levels, int at) {
         const D16 d;
         if constexpr (kPart == Part::kWhole) {
-            StoreRounded<kLevelBits>(levels, bytes_ + s * kSegmentLanes);
+            StoreRounded<kLevelBits>(levels, bytes_ + at);
         } else {
-            std::int16_t* sum = sum_ + s * kSegmentLanes;
-            const V16 share = hn::BitCast(d, Along<Kind::kSamples>(weight, s));
-            V16 part = hn::MulHigh(levels, share);
-            if constexpr (kPart == Part::kAnother) part = hn::SaturatedAdd(hn::Load(d, sum), part);
-            hn::Store(part, d, sum);
+            V16 part = hn::MulHigh(levels, hn::BitCast(d, hn::Load(DU16(), share_ + at)));
+            if constexpr (kPart == Part::kAnother)
+                part = hn::SaturatedAdd(hn::Load(d, sum_ + at), part);
+            hn::Store(part, d, sum_ + at);
         }
     }
 
     const PanoramaBlock& block_;
-    HWY_ALIGN std::int16_t sum_[kSegments * kSegmentLanes];
-    HWY_ALIGN std::uint8_t bytes_[kSegments * kSegmentLanes];
+    HWY_ALIGN std::uint16_t share_[kLanes];  // of one source
+    HWY_ALIGN std::int16_t sum_[kLanes];
+    HWY_ALIGN float weight_[kLanes];
+    HWY_ALIGN float total_[kLanes];
+    HWY_ALIGN std::uint8_t bytes_[kLanes];
 };
 
 bool KernelRunsHere() {
@@ -229,8 +305,12 @@ SampleGrid GridOf(const SamplePlane& plane) {
 }
 
 template <int kParts>
-HWY_INLINE void PlaceSource(BlockSource& source) {
+HWY_INLINE void PlaceSource(bool on_edge, BlockSource& source) {
     const CameraFrame& frame = source.camera->frame();
+    if (on_edge) {
+        FindSeen<8, kParts>(source.x, source.y, frame, source.luma);
+        FindSeen<4, kParts>(source.x, source.y, frame, source.chroma);
+    }
     PlaceBlock<8, kParts>(source.x, source.y, GridOf(frame.LumaSamples()), source.luma);
     Prefetch<8, kParts>(LumaOf(frame), source.luma);
     if (!frame.has_chroma()) return;
@@ -257,7 +337,7 @@ template <int kParts>
 void DrawAll(std::span<PanoramaBlock> blocks, const PanoramaPlanes& out) {
     for (PanoramaBlock& block : blocks) {
         if (!block.suits_kernel()) continue;
-        for (BlockSource& source : block.sources) PlaceSource<kParts>(source);
+        for (BlockSource& source : block.sources) PlaceSource<kParts>(block.on_edge(), source);
     }
     for (const PanoramaBlock& block : blocks) {
         if (block.suits_kernel()) Drawing<LumaKind, kParts>(block, out);

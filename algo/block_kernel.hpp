@@ -9,8 +9,10 @@ namespace hitchview::algo {
 /// A camera moves by no more than this over a segment, px: what it shows of it fits into the
 /// kernel's window.
 inline constexpr float kKernelReach_px = 15;
-/// Nor does the kernel read nearer to the edge of a picture, nor smaller pictures.
+/// Where a source is read nearer to the edge of its picture, the kernel looks at what is seen.
 inline constexpr float kKernelMargin_px = 0.75F;
+/// It reads no source whose corners lie farther outside its picture, nor smaller pictures.
+inline constexpr float kKernelOutside_px = 64;
 inline constexpr int kKernelLeast_px = 32;
 
 /// False where the processor has no vector instructions.

@@ -58,11 +58,6 @@ class EdgeRows {
           planes_(Kind::Planes(out)),
           stride_bytes_(Kind::Stride_bytes(out)) {}
 
-    void Fill() const {
-        for (int row = 0; row < kSide; ++row) {
-            for (std::uint8_t* to : RowOf(row)) std::memset(to, Kind::Empty(false, 0), kSide);
-        }
-    }
     void Blend() const {
         for (int row = 0; row < kSide; ++row) BlendRow(row);
     }
@@ -156,15 +151,25 @@ bool BlockSource::SuitsKernel(int side_px) const {
     const auto narrow = [&](const Corners& along) {
         return std::abs(along[1] - along[0]) <= most && std::abs(along[3] - along[2]) <= most;
     };
-    return SeesAll(kKernelMargin_px) && narrow(x) && narrow(y) &&
-           camera->frame().width_px >= kKernelLeast_px &&
-           camera->frame().height_px >= kKernelLeast_px;
+    const CameraFrame& frame = camera->frame();
+    const auto near = [](const Corners& along, int size_px) {
+        const auto [least, greatest] = std::minmax_element(along.begin(), along.end());
+        return *least >= -kKernelOutside_px &&
+               *greatest <= static_cast<float>(size_px) + kKernelOutside_px;
+    };
+    return narrow(x) && narrow(y) && near(x, frame.width_px) && near(y, frame.height_px) &&
+           frame.width_px >= kKernelLeast_px && frame.height_px >= kKernelLeast_px;
 }
 
 bool PanoramaBlock::SourcesSuitKernel() const {
     return !sources.empty() && std::all_of(sources.begin(), sources.end(), [&](const auto& source) {
         return source.SuitsKernel(side_px);
     });
+}
+
+bool PanoramaBlock::SourcesSeeAll() const {
+    return std::all_of(sources.begin(), sources.end(),
+                       [](const auto& source) { return source.SeesAll(kKernelMargin_px); });
 }
 
 /// False if nothing has a weight at some corner.
@@ -182,7 +187,9 @@ bool PanoramaBlock::NormalizeWeights() {
 
 void PanoramaBlock::Prepare() {
     const bool plain = sources.size() == 1 && !camera_missing;
-    suits_kernel_ = SourcesSuitKernel() && (plain || NormalizeWeights()) && KernelRuns();
+    suits_kernel_ = SourcesSuitKernel() && KernelRuns();
+    on_edge_ = !suits_kernel_ || !SourcesSeeAll() || !(plain || NormalizeWeights());
+    if (on_edge_ && camera_missing) suits_kernel_ = false;  // which knows no pattern
 }
 
 void PanoramaBlock::TakeQuarter(const PanoramaBlock& whole, int down, int across) {
@@ -206,17 +213,23 @@ void PanoramaBlock::TakeQuarter(const PanoramaBlock& whole, int down, int across
     Prepare();
 }
 
+void PanoramaBlock::Clear(const PanoramaPlanes& out) const {
+    const auto fill = [](std::uint8_t* to, int stride_bytes, int side, int value) {
+        for (int row = 0; row < side; ++row)
+            std::memset(to + static_cast<std::ptrdiff_t>(row) * stride_bytes, value,
+                        static_cast<std::size_t>(side));
+    };
+    const auto chroma_at = static_cast<std::ptrdiff_t>(y / 2) * out.chroma_stride_bytes + x / 2;
+    fill(out.y + static_cast<std::ptrdiff_t>(y) * out.y_stride_bytes + x, out.y_stride_bytes,
+         side_px, Luma::Empty(false, 0));
+    for (std::uint8_t* plane : {out.u, out.v})
+        fill(plane + chroma_at, out.chroma_stride_bytes, side_px / 2, Chroma::Empty(false, 0));
+}
+
 void PanoramaBlock::RenderPixels(NoData no_data, const PanoramaPlanes& out) const {
     const bool hatched = no_data == NoData::kPattern && camera_missing;
-    const EdgeRows<Luma> luma(*this, hatched, out);
-    const EdgeRows<Chroma> chroma(*this, hatched, out);
-    if (sources.empty() && !hatched) {
-        luma.Fill();
-        chroma.Fill();
-    } else {
-        luma.Blend();
-        chroma.Blend();
-    }
+    EdgeRows<Luma>(*this, hatched, out).Blend();
+    EdgeRows<Chroma>(*this, hatched, out).Blend();
 }
 
 }  // namespace hitchview::algo

@@ -31,6 +31,8 @@ struct SampleWindows {
     SegmentLines y;
     alignas(64) std::array<std::int32_t, kMaxSegments> offset_bytes;  ///< the window's
     int rows;
+    /// Bit i: sample i lies in the picture. Only of a block on a picture's edge; elsewhere all do.
+    alignas(64) std::array<std::uint16_t, kMaxSegments> seen;
 };
 
 /// One camera's part in a block of the panorama.
@@ -50,8 +52,7 @@ struct BlockSource {
     /// The whole block lies inside the camera's picture, `margin_px` from its edge: its four
     /// corners do.
     [[nodiscard]] bool SeesAll(float margin_px = 0) const;
-    /// The vector kernel can read a block of so many px: it lies inside the picture and is not
-    /// reduced too much.
+    /// The vector kernel can read a block of so many px: it is not reduced too much.
     [[nodiscard]] bool SuitsKernel(int side_px) const;
 };
 
@@ -66,20 +67,27 @@ struct PanoramaBlock {
 
     /// To be called when the sources have been set.
     void Prepare();
-    /// Its pixels can be made by the vector kernel: it has sources, with weights that add up to 1
-    /// at each corner if there are several.
+    /// Its pixels can be made by the vector kernel.
     [[nodiscard]] bool suits_kernel() const { return suits_kernel_; }
+    /// Some of its pixels may not be seen by all of its sources, or by none, and the weights of
+    /// those that see a pixel need not add up to 1.
+    [[nodiscard]] bool on_edge() const { return on_edge_; }
+    [[nodiscard]] bool IsEmpty() const { return sources.empty() && !camera_missing; }
     /// One of its quarters, as a prepared block of half the size.
     void TakeQuarter(const PanoramaBlock& whole, int down, int across);
+    /// Makes the pixels of an empty block.
+    void Clear(const PanoramaPlanes& out) const;
     /// Makes the pixels of a block that does not suit the kernel, one by one. Requires side_px ==
     /// kSegmentLanes.
     void RenderPixels(NoData no_data, const PanoramaPlanes& out) const;
 
  private:
     [[nodiscard]] bool SourcesSuitKernel() const;
+    [[nodiscard]] bool SourcesSeeAll() const;
     bool NormalizeWeights();
 
     bool suits_kernel_ = false;
+    bool on_edge_ = false;
 };
 
 }  // namespace hitchview::algo

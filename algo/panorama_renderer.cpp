@@ -115,7 +115,11 @@ bool ShiftSource(const MultibandBlend& bands, int s, int row, int col, BlockSour
 }
 
 /// Makes the pixels of a block that the kernel cannot make as a whole.
-void RenderInQuarters(PanoramaBlock& block, NoData no_data, const PanoramaPlanes& out) {
+void RenderPixels(const PanoramaBlock& block, NoData no_data, const PanoramaPlanes& out) {
+    if (block.IsEmpty()) {
+        block.Clear(out);
+        return;
+    }
     if (block.side_px == kSegmentLanes) {
         block.RenderPixels(no_data, out);
         return;
@@ -179,8 +183,7 @@ void PanoramaRenderer::RenderRow(const Scene& scene, const PanoramaPlanes& out, 
         const std::span blocks(strip.blocks.data(), static_cast<std::size_t>(strip.count));
         DrawBlocks(blocks, strip.picture.planes());
         for (PanoramaBlock& block : blocks) {
-            if (!block.suits_kernel())
-                RenderInQuarters(block, scene.no_data, strip.picture.planes());
+            if (!block.suits_kernel()) RenderPixels(block, scene.no_data, strip.picture.planes());
         }
         strip.picture.CopyTo(out, first * block_px, row * block_px, block_px);
     }

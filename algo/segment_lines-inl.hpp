@@ -99,18 +99,20 @@ HWY_INLINE void FindLines(const FixedCorners& corners, SegmentLines& lines) {
 }
 
 /// First samples of the windows along one axis, of `count` out of `samples`: so that every segment
-/// lies in its own.
+/// lies in its own, as far as it lies in the picture. Places are kept modulo 1 << 16: what lies
+/// outside means nothing.
 template <int kSegments>
 HWY_INLINE void PlaceWindows(int samples, int count, const std::int32_t* firsts,
                              std::int32_t* windows, SegmentLines& lines) {
     const D32 d;
     const hn::Rebind<std::uint16_t, D32> d16;
     const V32 last = hn::Set(d, samples - count);
+    const V32 bits = hn::Set(d, 0xFFFF);
     for (int s = 0; s < kSegments; s += static_cast<int>(hn::Lanes(d))) {
-        const V32 window = hn::Min(hn::Load(d, windows + s), last);
+        const V32 window = hn::Max(hn::Min(hn::Load(d, windows + s), last), hn::Zero(d));
         const V32 first = hn::Sub(hn::Load(d, firsts + s), hn::ShiftLeft<kPlaceBits>(window));
         hn::Store(window, d, windows + s);
-        hn::Store(hn::DemoteTo(d16, first), d16, lines.first.data() + s);
+        hn::Store(hn::DemoteTo(d16, hn::And(first, bits)), d16, lines.first.data() + s);
     }
 }
 
@@ -140,6 +142,34 @@ HWY_INLINE int PlaceAxis(const Corners& corners, int samples, int count, Segment
     if constexpr (!kKnown) count = std::max(count, hn::GetLane(hn::MaxOfLanes(d, widest)) + 2);
     PlaceWindows<kSegments>(samples, count, firsts, windows, lines);
     return count;
+}
+
+/// Which samples of the segments lie in a picture, from the places of its luma.
+template <int kSamples, int kParts>
+HWY_INLINE void FindSeen(const Corners& x, const Corners& y, const CameraFrame& frame,
+                         SampleWindows& windows) {
+    const D32 d;
+    const hn::Rebind<std::uint16_t, D32> d16;
+    const FixedCorners fixed_x = FixedOf(x, 1 << kPlaceBits);
+    const FixedCorners fixed_y = FixedOf(y, 1 << kPlaceBits);
+    const V32 right = hn::Set(d, (frame.width_px - 1) << kPlaceBits);
+    const V32 bottom = hn::Set(d, (frame.height_px - 1) << kPlaceBits);
+    constexpr int kSegments = SegmentTable<kSamples, kParts>::kSegments;
+    for (int s = 0; s < kSegments; s += static_cast<int>(hn::Lanes(d))) {
+        Segments at_x = SegmentsAt<kSamples, kParts>(fixed_x, s);
+        Segments at_y = SegmentsAt<kSamples, kParts>(fixed_y, s);
+        V32 seen = hn::Zero(d);
+        for (int i = 0; i < kSamples; ++i) {
+            // Negative where any of the four distances is.
+            const V32 outside = hn::Or(hn::Or(at_x.first, hn::Sub(right, at_x.first)),
+                                       hn::Or(at_y.first, hn::Sub(bottom, at_y.first)));
+            const V32 bit = hn::Set(d, 1 << i);
+            seen = hn::Or(seen, hn::AndNot(hn::BroadcastSignBit(outside), bit));
+            at_x.first = hn::Add(at_x.first, at_x.step);
+            at_y.first = hn::Add(at_y.first, at_y.step);
+        }
+        hn::Store(hn::DemoteTo(d16, seen), d16, windows.seen.data() + s);
+    }
 }
 
 /// How the samples of a picture lie in memory.
