@@ -179,7 +179,7 @@ class Drawing {
     void FindEdgeShares(const BlockSource& source) {
         FindEdgeWeights(source);
         for (int at = 0; at < kLanes; ++at) {
-            const float total = std::max(total_[at], 1e-12F);
+            const float total = std::max(total_[at], 1e-12F);  // 0 where nothing is seen
             share_[at] =
                 static_cast<std::uint16_t>(static_cast<int>(kWholeShare * (weight_[at] / total)));
         }
