@@ -56,20 +56,14 @@ class EdgeRows {
         : block_(block),
           hatched_(hatched),
           planes_(Kind::Planes(out)),
-          stride_bytes_(Kind::Stride_bytes(out)),
-          cols_(static_cast<std::size_t>(block.width / Kind::kScale)) {}
+          stride_bytes_(Kind::Stride_bytes(out)) {}
 
-    void Fill() const {
-        for (int row = 0; row < block_.height / Kind::kScale; ++row) {
-            for (std::uint8_t* to : RowOf(row)) std::memset(to, Kind::Empty(false, 0), cols_);
-        }
-    }
     void Blend() const {
-        for (int row = 0; row < block_.height / Kind::kScale; ++row) BlendRow(row);
+        for (int row = 0; row < kSide; ++row) BlendRow(row);
     }
 
  private:
-    static constexpr int kSide = PanoramaBlock::kSide / Kind::kScale;
+    static constexpr int kSide = kSegmentLanes / Kind::kScale;
     static constexpr std::size_t kChannels = Kind::kChannels;
     using Row = std::array<float, kSide>;
     using Rows = std::array<Row, kChannels>;
@@ -94,7 +88,7 @@ class EdgeRows {
         Row weight{};
         for (const BlockSource& source : block_.sources) AddRow(source, row, sum, weight);
         const auto to = RowOf(row);
-        for (std::size_t i = 0; i < cols_; ++i) {
+        for (std::size_t i = 0; i < kSide; ++i) {
             for (std::size_t k = 0; k < kChannels; ++k)
                 to[k][i] = weight[i] > 0 ? Round(sum[k][i] / weight[i]) : Empty(row, i);
         }
@@ -133,8 +127,17 @@ class EdgeRows {
     bool hatched_;
     std::array<std::uint8_t*, kChannels> planes_;
     int stride_bytes_;
-    std::size_t cols_;
 };
+
+/// Values at the corners of a quarter.
+Corners QuarterOf(const Corners& whole, int down, int across) {
+    const auto at = [&](int v, int u) {
+        const float top = whole[0] + 0.5F * static_cast<float>(u) * (whole[1] - whole[0]);
+        const float bottom = whole[2] + 0.5F * static_cast<float>(u) * (whole[3] - whole[2]);
+        return top + 0.5F * static_cast<float>(v) * (bottom - top);
+    };
+    return {at(down, across), at(down, across + 1), at(down + 1, across), at(down + 1, across + 1)};
+}
 
 }  // namespace
 
@@ -143,19 +146,30 @@ bool BlockSource::SeesAll(float margin_px) const {
            camera->Sees(x[2], y[2], margin_px) && camera->Sees(x[3], y[3], margin_px);
 }
 
-bool BlockSource::SuitsKernel() const {
-    const auto narrow = [](const Corners& along) {
-        return std::abs(along[1] - along[0]) <= kKernelReach_px &&
-               std::abs(along[3] - along[2]) <= kKernelReach_px;
+bool BlockSource::SuitsKernel(int side_px) const {
+    const float most = kKernelReach_px * static_cast<float>(side_px / kSegmentLanes);
+    const auto narrow = [&](const Corners& along) {
+        return std::abs(along[1] - along[0]) <= most && std::abs(along[3] - along[2]) <= most;
     };
-    return SeesAll(kKernelMargin_px) && narrow(x) && narrow(y) &&
-           camera->frame().width_px >= kKernelLeast_px &&
-           camera->frame().height_px >= kKernelLeast_px;
+    const CameraFrame& frame = camera->frame();
+    const auto near = [](const Corners& along, int size_px) {
+        const auto [least, greatest] = std::minmax_element(along.begin(), along.end());
+        return *least >= -kKernelOutside_px &&
+               *greatest <= static_cast<float>(size_px) + kKernelOutside_px;
+    };
+    return narrow(x) && narrow(y) && near(x, frame.width_px) && near(y, frame.height_px) &&
+           frame.width_px >= kKernelLeast_px && frame.height_px >= kKernelLeast_px;
 }
 
 bool PanoramaBlock::SourcesSuitKernel() const {
-    return !sources.empty() && std::all_of(sources.begin(), sources.end(),
-                                           [](const auto& source) { return source.SuitsKernel(); });
+    return !sources.empty() && std::all_of(sources.begin(), sources.end(), [&](const auto& source) {
+        return source.SuitsKernel(side_px);
+    });
+}
+
+bool PanoramaBlock::SourcesSeeAll() const {
+    return std::all_of(sources.begin(), sources.end(),
+                       [](const auto& source) { return source.SeesAll(kKernelMargin_px); });
 }
 
 /// False if nothing has a weight at some corner.
@@ -171,27 +185,51 @@ bool PanoramaBlock::NormalizeWeights() {
     return true;
 }
 
-bool PanoramaBlock::PlaceSources() {
-    return std::all_of(sources.begin(), sources.end(),
-                       [](BlockSource& source) { return PlaceSource(source); });
-}
-
 void PanoramaBlock::Prepare() {
     const bool plain = sources.size() == 1 && !camera_missing;
-    suits_kernel_ = SourcesSuitKernel() && (plain || NormalizeWeights()) && PlaceSources();
+    suits_kernel_ = SourcesSuitKernel() && KernelRuns();
+    on_edge_ = !suits_kernel_ || !SourcesSeeAll() || !(plain || NormalizeWeights());
+    if (on_edge_ && camera_missing) suits_kernel_ = false;  // which knows no pattern
+}
+
+void PanoramaBlock::TakeQuarter(const PanoramaBlock& whole, int down, int across) {
+    side_px = whole.side_px / 2;
+    x = whole.x + across * side_px;
+    y = whole.y + down * side_px;
+    phase_px = whole.phase_px + (across + down) * side_px;
+    camera_missing = whole.camera_missing;
+    sources.clear();
+    const auto quarter = [&](const Corners& of) { return QuarterOf(of, down, across); };
+    for (const BlockSource& from : whole.sources) {
+        BlockSource& source = sources.emplace_back();
+        source.camera = from.camera;
+        source.x = quarter(from.x);
+        source.y = quarter(from.y);
+        source.weight = quarter(from.weight);
+        source.shifted = from.shifted;
+        if (!from.shifted) continue;
+        for (std::size_t k = 0; k < 3; ++k) source.shift[k] = quarter(from.shift[k]);
+    }
+    Prepare();
+}
+
+void PanoramaBlock::Clear(const PanoramaPlanes& out) const {
+    const auto fill = [](std::uint8_t* to, int stride_bytes, int side, int value) {
+        for (int row = 0; row < side; ++row)
+            std::memset(to + static_cast<std::ptrdiff_t>(row) * stride_bytes, value,
+                        static_cast<std::size_t>(side));
+    };
+    const auto chroma_at = static_cast<std::ptrdiff_t>(y / 2) * out.chroma_stride_bytes + x / 2;
+    fill(out.y + static_cast<std::ptrdiff_t>(y) * out.y_stride_bytes + x, out.y_stride_bytes,
+         side_px, Luma::Empty(false, 0));
+    for (std::uint8_t* plane : {out.u, out.v})
+        fill(plane + chroma_at, out.chroma_stride_bytes, side_px / 2, Chroma::Empty(false, 0));
 }
 
 void PanoramaBlock::RenderPixels(NoData no_data, const PanoramaPlanes& out) const {
     const bool hatched = no_data == NoData::kPattern && camera_missing;
-    const EdgeRows<Luma> luma(*this, hatched, out);
-    const EdgeRows<Chroma> chroma(*this, hatched, out);
-    if (sources.empty() && !hatched) {
-        luma.Fill();
-        chroma.Fill();
-    } else {
-        luma.Blend();
-        chroma.Blend();
-    }
+    EdgeRows<Luma>(*this, hatched, out).Blend();
+    EdgeRows<Chroma>(*this, hatched, out).Blend();
 }
 
 }  // namespace hitchview::algo

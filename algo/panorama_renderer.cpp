@@ -10,59 +10,51 @@
 namespace hitchview::algo {
 namespace {
 
-constexpr int kBlock = PanoramaBlock::kSide;
-constexpr int kStrip = 16;  // blocks
+constexpr int kStrip_px = 128;
+constexpr int kMaxStrip = kStrip_px / kSegmentLanes;  // blocks
 
 /// Memory for the pixels of a strip of blocks.
 class StripPicture {
  public:
     [[nodiscard]] PanoramaPlanes planes() {
-        return {kWidth, kBlock, y_.data(), kWidth, u_.data(), v_.data(), kWidth / 2};
+        return {kWidth, kHeight, y_.data(), kWidth, u_.data(), v_.data(), kWidth / 2};
     }
-    /// To the canvas with the strip's top left pixel at (x, y), as far as it lies on it.
-    void CopyTo(const PanoramaPlanes& out, int x, int y) const {
+    /// Its first `rows` to the canvas with their top left pixel at (x, y), as far as it lies on it.
+    void CopyTo(const PanoramaPlanes& out, int x, int y, int rows) const {
         const int width = std::min(kWidth, out.width_px - x);
-        const int height = std::min(kBlock, out.height_px - y);
+        const int height = std::min(rows, out.height_px - y);
         const auto chroma_at = static_cast<std::ptrdiff_t>(y / 2) * out.chroma_stride_bytes + x / 2;
-        CopyRows(y_.data(), kWidth, width, height,
-                 out.y + static_cast<std::ptrdiff_t>(y) * out.y_stride_bytes + x,
-                 out.y_stride_bytes);
-        CopyRows(u_.data(), kWidth / 2, width / 2, height / 2, out.u + chroma_at,
-                 out.chroma_stride_bytes);
-        CopyRows(v_.data(), kWidth / 2, width / 2, height / 2, out.v + chroma_at,
-                 out.chroma_stride_bytes);
+        CopyRows<kWidth>(y_.data(), width, height,
+                         out.y + static_cast<std::ptrdiff_t>(y) * out.y_stride_bytes + x,
+                         out.y_stride_bytes);
+        CopyRows<kWidth / 2>(u_.data(), width / 2, height / 2, out.u + chroma_at,
+                             out.chroma_stride_bytes);
+        CopyRows<kWidth / 2>(v_.data(), width / 2, height / 2, out.v + chroma_at,
+                             out.chroma_stride_bytes);
     }
 
  private:
-    static constexpr int kWidth = kStrip * kBlock;
+    static constexpr int kWidth = kStrip_px;
+    static constexpr int kHeight = kMaxBlock_px;
 
-    static void CopyRows(const std::uint8_t* from, int from_stride_bytes, int bytes, int rows,
-                         std::uint8_t* to, int stride_bytes) {
+    template <int kBytes>
+    static void CopyRows(const std::uint8_t* from, int bytes, int rows, std::uint8_t* to,
+                         int stride_bytes) {
         for (int r = 0; r < rows; ++r) {
-            std::memcpy(to + static_cast<std::ptrdiff_t>(r) * stride_bytes,
-                        from + static_cast<std::ptrdiff_t>(r) * from_stride_bytes,
-                        static_cast<std::size_t>(bytes));
+            if (bytes == kBytes) {
+                std::memcpy(to, from, kBytes);
+            } else {
+                std::memcpy(to, from, static_cast<std::size_t>(bytes));
+            }
+            from += kBytes;
+            to += stride_bytes;
         }
     }
 
-    alignas(64) std::array<std::uint8_t, kWidth * kBlock> y_;
-    alignas(64) std::array<std::uint8_t, kWidth * kBlock / 4> u_;
-    alignas(64) std::array<std::uint8_t, kWidth * kBlock / 4> v_;
+    alignas(64) std::array<std::uint8_t, kWidth * kHeight> y_;
+    alignas(64) std::array<std::uint8_t, kWidth * kHeight / 4> u_;
+    alignas(64) std::array<std::uint8_t, kWidth * kHeight / 4> v_;
 };
-
-/// Values at the corners of a part, from those at the corners of its block.
-Corners ValuesAt(const BlockPart& part, const Corners& block) {
-    if (part.count == 1) return block;
-    const auto at = [&](int down, int across) {
-        const float v = static_cast<float>(down) / static_cast<float>(part.count);
-        const float u = static_cast<float>(across) / static_cast<float>(part.count);
-        const float top = block[0] + u * (block[1] - block[0]);
-        const float bottom = block[2] + u * (block[3] - block[2]);
-        return top + v * (bottom - top);
-    };
-    return {at(part.down, part.across), at(part.down, part.across + 1),
-            at(part.down + 1, part.across), at(part.down + 1, part.across + 1)};
-}
 
 /// Which sources of the map are seen in some blocks of a row; bit s is source s.
 class BlockSources {
@@ -96,37 +88,51 @@ class BlockSources {
         }
     }
 
-    std::array<unsigned, kStrip + 1> used_{};
-    std::array<unsigned, kStrip + 1> seen_{};
+    std::array<unsigned, kMaxStrip + 1> used_{};
+    std::array<unsigned, kMaxStrip + 1> seen_{};
 };
 
-void ReadCorners(const ComposedMap& map, int s, const BlockPart& part, BlockSource& source) {
-    const ComposedMap::Corner* upper = &map.corner(s, part.row, part.col);
-    const ComposedMap::Corner* lower = &map.corner(s, part.row + 1, part.col);
-    source.x = ValuesAt(part, {upper[0].x, upper[1].x, lower[0].x, lower[1].x});
-    source.y = ValuesAt(part, {upper[0].y, upper[1].y, lower[0].y, lower[1].y});
-    source.weight =
-        ValuesAt(part, {upper[0].weight, upper[1].weight, lower[0].weight, lower[1].weight});
+void ReadCorners(const ComposedMap& map, int s, int row, int col, BlockSource& source) {
+    const ComposedMap::Corner* upper = &map.corner(s, row, col);
+    const ComposedMap::Corner* lower = &map.corner(s, row + 1, col);
+    source.x = {upper[0].x, upper[1].x, lower[0].x, lower[1].x};
+    source.y = {upper[0].y, upper[1].y, lower[0].y, lower[1].y};
+    source.weight = {upper[0].weight, upper[1].weight, lower[0].weight, lower[1].weight};
 }
 
-/// False, and nothing done, where the shift is too small to show.
-bool ShiftSource(const MultibandBlend& bands, int s, const BlockPart& part, BlockSource& source) {
+/// False where the shift is too small to show.
+bool ShiftSource(const MultibandBlend& bands, int s, int row, int col, BlockSource& source) {
     constexpr float kLeast = 0.25F;
     float most = 0;
     for (std::size_t k = 0; k < 4; ++k) {
         const MultibandBlend::Colour colour =
-            bands.shift(s, part.row + static_cast<int>(k / 2), part.col + static_cast<int>(k % 2));
+            bands.shift(s, row + static_cast<int>(k / 2), col + static_cast<int>(k % 2));
         most = std::max(most, colour.abs().maxCoeff());
         for (std::size_t channel = 0; channel < 3; ++channel)
             source.shift[channel][k] = colour[static_cast<int>(channel)];
     }
-    if (most <= kLeast) return false;
-    for (Corners& channel : source.shift) channel = ValuesAt(part, channel);
-    return true;
+    return most > kLeast;
 }
 
-int RowsOf(const PanoramaPlanes& out) {
-    return (out.height_px + kBlock - 1) / kBlock;
+/// Makes the pixels of a block that the kernel cannot make as a whole.
+void RenderPixels(const PanoramaBlock& block, NoData no_data, const PanoramaPlanes& out) {
+    if (block.IsEmpty()) {
+        block.Clear(out);
+        return;
+    }
+    if (block.side_px == kSegmentLanes) {
+        block.RenderPixels(no_data, out);
+        return;
+    }
+    PanoramaBlock quarter;
+    for (const int i : {0, 1, 2, 3}) {
+        quarter.TakeQuarter(block, i / 2, i % 2);
+        if (quarter.suits_kernel()) {
+            DrawBlocks({&quarter, 1}, out);
+        } else {
+            quarter.RenderPixels(no_data, out);
+        }
+    }
 }
 
 }  // namespace
@@ -137,7 +143,7 @@ int RowsOf(const PanoramaPlanes& out) {
 /// go.
 struct PanoramaRenderer::Strip {
     int count = 0;
-    std::array<PanoramaBlock, kStrip> blocks;
+    std::array<PanoramaBlock, kMaxStrip> blocks;
     StripPicture picture;
 };
 
@@ -157,7 +163,7 @@ void PanoramaRenderer::Render(const ComposedMap& map, const RigFrames& frames, N
                               const PanoramaPlanes& out, TaskRunner& runner) const {
     const Samplers cameras = SamplersOf(map, frames);
     const Scene scene{map, cameras, nullptr, no_data};
-    runner.Run(RowsOf(out), [&](int row) { RenderRow(scene, out, row); });
+    runner.Run(map.block_rows(), [&](int row) { RenderRow(scene, out, row); });
 }
 
 void PanoramaRenderer::RenderBlended(const ComposedMap& map, const RigFrames& frames,
@@ -165,48 +171,44 @@ void PanoramaRenderer::RenderBlended(const ComposedMap& map, const RigFrames& fr
                                      TaskRunner& runner) const {
     const Samplers cameras = SamplersOf(map, frames);
     const Scene scene{map, cameras, &bands, NoData::kPattern};
-    runner.Run(RowsOf(out), [&](int row) { RenderRow(scene, out, row); });
+    runner.Run(map.block_rows(), [&](int row) { RenderRow(scene, out, row); });
 }
 
-/// Squares that are drawn at once.
 void PanoramaRenderer::RenderRow(const Scene& scene, const PanoramaPlanes& out, int row) {
+    const int block_px = scene.map.block_px();
+    const int step = kStrip_px / block_px;
     Strip strip;
-    for (int first = 0; first * kBlock < out.width_px; first += kStrip) {
+    for (int first = 0; first < scene.map.block_cols(); first += step) {
         GatherStrip(scene, row, first, strip);
         const std::span blocks(strip.blocks.data(), static_cast<std::size_t>(strip.count));
         DrawBlocks(blocks, strip.picture.planes());
-        for (const PanoramaBlock& block : blocks) {
-            if (!block.suits_kernel()) block.RenderPixels(scene.no_data, strip.picture.planes());
+        for (PanoramaBlock& block : blocks) {
+            if (!block.suits_kernel()) RenderPixels(block, scene.no_data, strip.picture.planes());
         }
-        strip.picture.CopyTo(out, first * kBlock, row * kBlock);
+        strip.picture.CopyTo(out, first * block_px, row * block_px, block_px);
     }
 }
 
-void PanoramaRenderer::GatherStrip(const Scene& scene, int row, int first, Strip& strip) {
-    const int to_a_block = scene.map.block_px() / kBlock;
-    const int first_col = first / to_a_block;
-    const int cols = std::min(kStrip / to_a_block, scene.map.block_cols() - first_col);
-    const BlockSources sources(scene.map, row / to_a_block, first_col, cols);
-    strip.count = cols * to_a_block;
+void PanoramaRenderer::GatherStrip(const Scene& scene, int row, int first_col, Strip& strip) {
+    const int block_px = scene.map.block_px();
+    strip.count = std::min(kStrip_px / block_px, scene.map.block_cols() - first_col);
+    const BlockSources sources(scene.map, row, first_col, strip.count);
     for (int i = 0; i < strip.count; ++i) {
         PanoramaBlock& block = strip.blocks[static_cast<std::size_t>(i)];
-        block.x = i * kBlock;
-        block.phase_px = (first + i + row) * kBlock;
-        const int col = i / to_a_block;
-        Gather(scene,
-               {row / to_a_block, first_col + col, row % to_a_block, i % to_a_block, to_a_block},
-               sources.of(col), block);
+        block.x = i * block_px;
+        block.side_px = block_px;
+        block.phase_px = (first_col + i + row) * block_px;
+        Gather(scene, row, first_col + i, sources.of(i), block);
         block.Prepare();
     }
 }
 
 /// `sources`: bit s is source s of the map.
-void PanoramaRenderer::Gather(const Scene& scene, const BlockPart& part, unsigned sources,
+void PanoramaRenderer::Gather(const Scene& scene, int row, int col, unsigned sources,
                               PanoramaBlock& block) {
     block.sources.clear();
     block.camera_missing = false;
-    const bool shifts =
-        scene.bands != nullptr && sources != 0 && scene.bands->Shifts(part.row, part.col);
+    const bool shifts = scene.bands != nullptr && sources != 0 && scene.bands->Shifts(row, col);
     for (; sources != 0; sources &= sources - 1) {
         const int s = std::countr_zero(sources);
         const CameraSampler& camera = scene.cameras[static_cast<std::size_t>(s)];
@@ -216,8 +218,8 @@ void PanoramaRenderer::Gather(const Scene& scene, const BlockPart& part, unsigne
         }
         BlockSource& source = block.sources.emplace_back();
         source.camera = &camera;
-        ReadCorners(scene.map, s, part, source);
-        source.shifted = shifts && ShiftSource(*scene.bands, s, part, source);
+        ReadCorners(scene.map, s, row, col, source);
+        source.shifted = shifts && ShiftSource(*scene.bands, s, row, col, source);
     }
 }
 

@@ -8,15 +8,6 @@
 
 namespace hitchview::algo {
 
-/// A square that is drawn at once, as a part of a block of the map.
-struct BlockPart {
-    int row = 0;  ///< block of the map
-    int col = 0;
-    int down = 0;  ///< which of its squares
-    int across = 0;
-    int count = 1;  ///< squares to a side of a block
-};
-
 /// Makes the output picture: every pixel is read once, bilinear, straight from the camera frames;
 /// where cameras or units are blended, once from each of them. Bit-identical on any number of
 /// tasks.
@@ -47,10 +38,10 @@ class PanoramaRenderer {
     struct Strip;
 
     [[nodiscard]] Samplers SamplersOf(const ComposedMap& map, const RigFrames& frames) const;
-    static void Gather(const Scene& scene, const BlockPart& part, unsigned sources,
+    static void Gather(const Scene& scene, int row, int col, unsigned sources,
                        PanoramaBlock& block);
     static void RenderRow(const Scene& scene, const PanoramaPlanes& out, int row);
-    static void GatherStrip(const Scene& scene, int row, int first, Strip& strip);
+    static void GatherStrip(const Scene& scene, int row, int first_col, Strip& strip);
 
     CameraGains gains_;
 };

@@ -10,6 +10,7 @@
 #include "algo/multiband_blend.hpp"
 #include "algo/panorama_renderer.hpp"
 #include "algo/semi_surround_view.hpp"
+#include "algo/unified_options.hpp"
 #include "drivers/simulated_rig.hpp"
 #include "tests/support/camera_picture.hpp"
 #include "tests/support/nv12_picture.hpp"
@@ -54,7 +55,7 @@ class Ring {
         }
         composition_.M_canvas_view[Unit::kTrailer] = algo::ToPose(canvas_, {{131, 0.02, -0.01}});
         composition_.discrepancy.setConstant(1.7F);
-        map_.emplace(canvas_, geometry_, algo::SeamOptions{});
+        map_.emplace(canvas_, geometry_, algo::SeamOptionsOf(canvas_));
         const algo::RigPictures pictures{frames_, gains_};
         map_->Build(composition_, pictures, runner_);
         bands_.emplace(*map_);

@@ -181,6 +181,55 @@ TEST(PanoramaRendererTest, TwoPlanesShowEachUnitOnItsSideAndABlendInTheStripBetw
     }
 }
 
+/// Canvas widths with corners 8 and 16 px apart.
+class WidthTest : public testing::TestWithParam<int> {};
+
+TEST_P(WidthTest, PixelsThatOneOfTwoTiltedPicturesShowsAreItsOwnUpToItsEdge) {
+    SerialRunner runner;
+    PerUnit<Matrix3d> M_view_canvas;
+    Composition composition;
+    for (const Unit unit : kUnits) {
+        const bool tractor = unit == Unit::kTractor;
+        composition.M_canvas_view[unit] =
+            TurnAndShift(tractor ? 0.3 : -0.2, tractor ? 60 : 140, 50);
+        M_view_canvas[unit] = composition.M_canvas_view[unit].inverse();
+    }
+    const Nv12Picture tractor(cv::Mat1b(kSize, std::uint8_t{60}), 100, 150);
+    const Nv12Picture trailer(cv::Mat1b(kSize, std::uint8_t{180}), 100, 150);
+    RigFrames frames;
+    frames[Unit::kTractor][0] = tractor.frame();
+    frames[Unit::kTrailer][0] = trailer.frame();
+    const PanoramaPicture panorama = Render(Projection::Plane(GetParam(), 240), PlaneRig(true),
+                                            composition, frames, NoData::kBlack, runner);
+    // px into the picture; less: outside.
+    const auto depth = [&](Unit unit, int x, int y) {
+        const Vector2d p = (M_view_canvas[unit] * Eigen::Vector3d(x, y, 1)).hnormalized();
+        return std::min({p.x(), p.y(), kSize.width - 1 - p.x(), kSize.height - 1 - p.y()});
+    };
+    std::array<int, 4> seen_by{};
+    for (int y = 0; y < 240; ++y) {
+        for (int x = 0; x < 360; ++x) {
+            const double a = depth(Unit::kTractor, x, y);
+            const double b = depth(Unit::kTrailer, x, y);
+            if (std::min(std::abs(a), std::abs(b)) < 0.01) continue;
+            const int which = (a > 0 ? 1 : 0) + (b > 0 ? 2 : 0);
+            ++seen_by[static_cast<std::size_t>(which)];
+            constexpr std::array<std::array<int, 2>, 4> kGrey{
+                {{0, 0}, {59, 61}, {179, 181}, {59, 181}}};
+            const auto [least, most] = kGrey[static_cast<std::size_t>(which)];
+            const int grey = panorama.y()(y, x);
+            ASSERT_TRUE(grey >= least && grey <= most) << grey << " at " << x << ' ' << y;
+            const int u = std::max(a, b) < -1 ? 128 : 100;
+            if (std::abs(std::max(a, b)) > 1) {
+                ASSERT_NEAR(panorama.u()(y / 2, x / 2), u, 1) << x << ' ' << y;
+            }
+        }
+    }
+    for (const int count : seen_by) EXPECT_GT(count, 3000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Corners8And16PxApart, WidthTest, testing::Values(360, 2064));
+
 TEST(PanoramaRendererTest, WhatThePreferredUnitDoesNotCoverComesFromTheOtherOne) {
     SerialRunner runner;
     Composition composition;
