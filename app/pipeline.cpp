@@ -116,8 +116,11 @@ const ShownPanorama* Pipeline::Show(const algo::Composition& composition) {
         renderer_.SetGains(gains_);
     }
     {
-        const StageTimer timer(times_, Stage::kRender);
+        const StageTimer timer(times_, Stage::kBands);
         bands_.Update(map_, pictures, runner_);
+    }
+    {
+        const StageTimer timer(times_, Stage::kRender);
         renderer_.RenderBlended(map_, frames, bands_, Planes(panorama_), runner_);
     }
     ++shown_;

@@ -122,7 +122,7 @@ TEST(ReportTest, HasEveryFigureAndNullForWhatWasNotMeasured) {
     EXPECT_GE(report.at("deadline_misses"), 0);
     EXPECT_TRUE(report.contains("heap_calls_after_ready"));
     EXPECT_GT(report.at("rss_bytes"), 1'000'000);
-    for (const char* stage : {"motion", "map", "gains", "render", "total"}) {
+    for (const char* stage : {"motion", "map", "gains", "bands", "render", "total"}) {
         for (const char* figure : {"p50_ms", "p99_ms", "max_ms"}) {
             EXPECT_GE(report.at("stages").at(stage).at(figure), 0) << stage << ' ' << figure;
         }

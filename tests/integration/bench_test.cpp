@@ -34,7 +34,7 @@ TEST_F(BenchTest, ItTellsWhatScriptsRelyOn) {
         ASSERT_TRUE(figures["whole_frame"].contains(key)) << key;
         EXPECT_GT(figures["whole_frame"][key].get<double>(), 0) << key;
     }
-    for (const char* stage : {"motion", "map", "render", "total"}) {
+    for (const char* stage : {"motion", "map", "bands", "render", "total"}) {
         ASSERT_TRUE(figures["stages"].contains(stage)) << stage;
         EXPECT_GT(figures["stages"][stage]["memcpy_ratio"].get<double>(), 0) << stage;
     }
