@@ -115,17 +115,20 @@ void MultibandBlend::Update(const ComposedMap& map, const RigPictures& pictures,
 }
 
 void MultibandBlend::ReadMasks(const ComposedMap& map, const RigFrames& frames, int row) {
-    for (int col = 0; col < cols_; ++col) {
-        const std::size_t at = At(row, col);
-        Masks& mask = mask_[0][at];
-        mask.setZero();
-        for (int s = 0; s < sources_; ++s) {
+    const std::size_t start = At(row, 0);
+    std::fill_n(mask_[0].begin() + static_cast<std::ptrdiff_t>(start), cols_, Masks::Zero());
+    for (int s = 0; s < sources_; ++s) {
+        const CameraFrame& frame =
+            frames[map.unit_of(s)][static_cast<std::size_t>(map.camera_of(s))];
+        const ComposedMap::Columns& used = map.used(s, row);
+        for (int col = used.first; col <= std::min(used.last, cols_ - 1); ++col) {
             const ComposedMap::Corner& corner = map.corner(s, row, col);
-            if (corner.weight <= 0) continue;
-            const CameraFrame& frame =
-                frames[map.unit_of(s)][static_cast<std::size_t>(map.camera_of(s))];
-            if (Inside(frame, corner)) mask[s] = corner.weight;
+            if (corner.weight > 0 && Inside(frame, corner))
+                mask_[0][At(row, col)][s] = corner.weight;
         }
+    }
+    for (std::size_t at = start; at < start + static_cast<std::size_t>(cols_); ++at) {
+        Masks& mask = mask_[0][at];
         const float sum = mask.sum();
         if (sum > 0) mask /= sum;
         int most = 0;

@@ -146,6 +146,14 @@ bool BlockSource::SeesAll(float margin_px) const {
            camera->Sees(x[2], y[2], margin_px) && camera->Sees(x[3], y[3], margin_px);
 }
 
+bool BlockSource::LiesBeside() const {
+    const auto beside = [](const Corners& along, int size_px) {
+        const auto [least, greatest] = std::minmax_element(along.begin(), along.end());
+        return *greatest < 0 || *least > static_cast<float>(size_px - 1);
+    };
+    return beside(x, camera->frame().width_px) || beside(y, camera->frame().height_px);
+}
+
 bool BlockSource::SuitsKernel(int side_px) const {
     const float most = kKernelReach_px * static_cast<float>(side_px / kSegmentLanes);
     const auto narrow = [&](const Corners& along) {

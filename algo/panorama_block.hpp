@@ -52,6 +52,8 @@ struct BlockSource {
     /// The whole block lies inside the camera's picture, `margin_px` from its edge: its four
     /// corners do.
     [[nodiscard]] bool SeesAll(float margin_px = 0) const;
+    /// All of the block lies to one side of the camera's picture.
+    [[nodiscard]] bool LiesBeside() const;
     /// The vector kernel can read a block of so many px: it is not reduced too much.
     [[nodiscard]] bool SuitsKernel(int side_px) const;
 };

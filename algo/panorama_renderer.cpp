@@ -219,6 +219,10 @@ void PanoramaRenderer::Gather(const Scene& scene, int row, int col, unsigned sou
         BlockSource& source = block.sources.emplace_back();
         source.camera = &camera;
         ReadCorners(scene.map, s, row, col, source);
+        if (source.LiesBeside()) {
+            block.sources.pop_back();
+            continue;
+        }
         source.shifted = shifts && ShiftSource(*scene.bands, s, row, col, source);
     }
 }
