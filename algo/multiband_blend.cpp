@@ -25,10 +25,11 @@ int StepAt(const ComposedMap& map, int source, int row, int col) {
     const ComposedMap::Corner& beside =
         map.corner(source, row, col < map.block_cols() ? col + 1 : col - 1);
     if (!beside.sees) return 1;
-    const float moved_px = std::hypot(beside.x - here.x, beside.y - here.y);
-    return std::clamp(
-        static_cast<int>(std::lround(moved_px * kSampleStep / static_cast<float>(map.block_px()))),
-        1, 2 * map.block_px());
+    const float across = beside.x - here.x;
+    const float down = beside.y - here.y;
+    const float moved_px = std::sqrt(across * across + down * down);
+    const float step = moved_px * kSampleStep / static_cast<float>(map.block_px());
+    return std::clamp(static_cast<int>(step + 0.5F), 1, 2 * map.block_px());
 }
 
 /// Sum of kN x kN values `step` apart, from the one at (x, y) on.

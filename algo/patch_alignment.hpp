@@ -11,7 +11,7 @@ namespace hitchview::algo {
 struct PatchAlignmentOptions {
     int finest_level = 0;         ///< pyramid level where the search ends
     int max_steps = 12;           ///< per pyramid level
-    float enough_px = 0.02F;      ///< a shorter step ends a level
+    float enough_px = 0.01F;      ///< a shorter step ends a level
     float min_strength = 1.0F;    ///< smaller eigenvalue of the mean structure tensor
     float max_travel_px = 12.0F;  ///< per level, in that level's pixels
 };
