@@ -15,7 +15,7 @@ constexpr int kLeft = IntegerPatch::kLeft;
 constexpr int kUnit = IntegerPatch::kUnit;
 constexpr int kGreyUnit = IntegerPatch::kGreyUnit;
 /// Of samples blended along a row: whatever two of them blend to fits into 16 bits.
-constexpr int kRowGreyUnit = 8;
+constexpr int kRowGreyUnit = 4;
 static_assert(255 * kRowGreyUnit * kUnit + kUnit < 1 << 16);
 constexpr int kMiddleGrey = 128;
 

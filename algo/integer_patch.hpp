@@ -15,7 +15,7 @@ struct IntegerPatch {
     static constexpr int kLeft = 7;     ///< px left of the centre, and above and below it
     static constexpr int kRight = 8;    ///< px right of the centre
     static constexpr int kArea = kWidth * kHeight;
-    static constexpr int kUnit = 32;      ///< sampled positions are multiples of 1 / kUnit px
+    static constexpr int kUnit = 64;      ///< sampled positions are multiples of 1 / kUnit px
     static constexpr int kGreyUnit = 16;  ///< sampled grey levels are multiples of 1 / kGreyUnit
 
     using Values = std::array<std::int16_t, kArea>;
