@@ -1,12 +1,14 @@
 #include "app/bench_baselines.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
+
+#include "app/evaluation_statistics.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -21,8 +23,7 @@ double MedianMs(int times, Work&& work) {
             std::chrono::steady_clock::now() - start;
         all.push_back(took.count());
     }
-    std::nth_element(all.begin(), all.begin() + times / 2, all.end());
-    return all[static_cast<std::size_t>(times / 2)];
+    return Quantile(std::move(all), 0.5).value();
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include "app/bench_run.hpp"
 
-#include <algorithm>
 #include <ctime>
 #include <vector>
 
 #include "algo/unified_vertex_motion.hpp"
+#include "app/evaluation_statistics.hpp"
 #include "app/panorama_publisher.hpp"
 #include "app/pipeline.hpp"
 #include "app/worker_pool.hpp"
@@ -25,14 +25,6 @@ double CpuMs(clockid_t clock) {
 
 double Ms(hal::Instant duration) {
     return std::chrono::duration<double, std::milli>(duration).count();
-}
-
-double Quantile(std::vector<double> values, double share) {
-    if (values.empty()) return 0;
-    const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at),
-                     values.end());
-    return values[at];
 }
 
 /// Takes panoramas as display units would, and notes when. Read it when the publisher has finished.
@@ -96,8 +88,8 @@ class BenchDrive {
         const double all_ms = CpuMs(CLOCK_PROCESS_CPUTIME_ID) - start_ms;
         figures.jpeg_ms = display.cpu_ms / options_.frames;
         figures.core_ms = all_ms / options_.frames - figures.jpeg_ms;
-        figures.jpeg_bytes = Quantile(display.bytes, 0.5);
-        figures.interval_ms = Quantile(display.intervals_ms, 0.5);
+        figures.jpeg_bytes = Quantile(display.bytes, 0.5).value_or(0);
+        figures.interval_ms = Quantile(display.intervals_ms, 0.5).value_or(0);
         figures.times = pipeline_.times();
     }
 
@@ -112,8 +104,8 @@ class BenchDrive {
             Publish(publisher, frames_.Set(next_++, due));
         }
         publisher.Finish();
-        figures.latency_p50_ms = Quantile(display.latencies_ms, 0.5);
-        figures.latency_p99_ms = Quantile(display.latencies_ms, 0.99);
+        figures.latency_p50_ms = Quantile(display.latencies_ms, 0.5).value_or(0);
+        figures.latency_p99_ms = Quantile(display.latencies_ms, 0.99).value_or(0);
         figures.dropped = options_.frames - static_cast<int>(display.latencies_ms.size());
     }
 

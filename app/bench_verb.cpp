@@ -1,6 +1,5 @@
 #include "app/bench_verb.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -9,6 +8,7 @@
 #include "app/bench_memory.hpp"
 #include "app/bench_run.hpp"
 #include "app/bench_table.hpp"
+#include "app/evaluation_statistics.hpp"
 #include "app/report.hpp"
 #include "app/scenario_frames.hpp"
 #include "app/simulated_geometry.hpp"
@@ -42,12 +42,6 @@ drivers::SimulationOptions Simulation(int camera_width_px) {
     return simulation;
 }
 
-double Median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 /// One simulated rig and all that is measured with it.
 class Bench {
  public:
@@ -78,7 +72,7 @@ class Bench {
             rounds["memcpy_ratio"].push_back(figures.core_ms / memcpy_ms);
         }
         json whole;
-        for (const auto& [name, values] : rounds) whole[name] = Median(values);
+        for (const auto& [name, values] : rounds) whole[name] = Quantile(values, 0.5).value();
         whole["memcpy_bytes"] = frames.BytesPerSet() + panorama_bytes;
         return whole;
     }
