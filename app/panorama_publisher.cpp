@@ -22,7 +22,8 @@ PanoramaPublisher::PanoramaPublisher(hal::Publisher& publisher, const hal::Clock
       telemetry_(telemetry),
       options_(options),
       pool_(format, options.drop_when_late ? kBuffersInTime : int{kBuffers}),
-      encoder_(format, options.jpeg) {
+      encoder_(format, options.jpeg),
+      helpers_(std::min(options.threads, int{JpegEncoder::kSlices}), {}, "publish") {
     while (auto slot = pool_.Take()) free_.Append(*slot);
     thread_ = std::thread([this] { Work(); });
 }
@@ -81,7 +82,7 @@ void PanoramaPublisher::Send(Filled& filled) {
 hal::Result<std::span<const std::uint8_t>> PanoramaPublisher::Compress(
     const hal::FrameView& picture) {
     const StageTimer timer(times_.jpeg);
-    return encoder_.Encode(picture);
+    return encoder_.Encode(picture, helpers_);
 }
 
 void PanoramaPublisher::SendImage(const Item& item, std::span<const std::uint8_t> jpeg) {

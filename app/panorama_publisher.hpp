@@ -7,6 +7,7 @@
 #include "app/jpeg_encoder.hpp"
 #include "app/stage_times.hpp"
 #include "app/telemetry_thread.hpp"
+#include "app/worker_pool.hpp"
 #include "hal/blocking_ring.hpp"
 #include "hal/clock.hpp"
 #include "hal/frame_pool.hpp"
@@ -20,9 +21,12 @@ struct PanoramaPublisherOptions {
     /// Real time: what does not get away in time is dropped, so that no latency queues up. False:
     /// Append waits, nothing is dropped (unpaced replay).
     bool drop_when_late = true;
+    /// Threads that compress; beyond JpegEncoder::kSlices they do not help.
+    int threads = 1;
 };
 
-/// Compresses and sends panoramas off the deadline, on a thread of its own (`publish`), and hands
+/// Compresses and sends panoramas off the deadline, on a thread of its own (`publish`), which
+/// `publish-1` ... help to compress, and hands
 /// on the hitch angles that have come meanwhile. Memory is taken at construction.
 class PanoramaPublisher {
  public:
@@ -85,6 +89,7 @@ class PanoramaPublisher {
     hal::BlockingRing<hal::FramePool::Slot, kBuffers> free_;
     hal::BlockingRing<Filled, kBuffers> filled_;
     JpegEncoder encoder_;
+    WorkerPool helpers_;
     PublishTimes times_;
     std::atomic<hal::Instant::rep> start_ns_{0};
     std::atomic<std::uint64_t> dropped_{0};

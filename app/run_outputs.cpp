@@ -100,7 +100,8 @@ hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const R
         PanoramaPublisherOptions{.jpeg = {.budget_bytes = config.publish.max_bytes,
                                           .highest_quality = config.publish.jpeg_quality},
                                  .calibration_id = run.calibration_id,
-                                 .drop_when_late = options.realtime});
+                                 .drop_when_late = options.realtime,
+                                 .threads = options.workers.value_or(config.workers)});
     return hal::Done{};
 }
 

@@ -1,7 +1,9 @@
 #include "app/worker_pool.hpp"
 
+#include <pthread.h>
+
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 
 #include "hal/expect.hpp"
 
@@ -25,12 +27,12 @@ std::uint32_t ShareOf(std::uint32_t left, std::size_t threads) {
 
 }  // namespace
 
-WorkerPool::WorkerPool(int workers, const ThreadSchedule& schedule)
+WorkerPool::WorkerPool(int workers, const ThreadSchedule& schedule, const std::string& name)
     : starting_(static_cast<std::uint32_t>(workers - 1)), spins_(CpusFor(schedule) >= workers) {
     HV_EXPECT(workers >= 1);
     threads_.reserve(static_cast<std::size_t>(workers - 1));
     for (int i = 1; i < workers; ++i) {
-        threads_.emplace_back([this, i, schedule] { Work(i, schedule); });
+        threads_.emplace_back([this, i, name, schedule] { Work(i, name, schedule); });
     }
     while (const std::uint32_t starting = starting_.load()) starting_.wait(starting);
 }
@@ -40,6 +42,20 @@ WorkerPool::~WorkerPool() {
     jobs_.fetch_add(1);
     jobs_.notify_all();
     for (std::thread& thread : threads_) thread.join();
+}
+
+std::chrono::nanoseconds WorkerPool::cpu_time() const {
+    std::chrono::nanoseconds sum{0};
+    for (const std::thread& thread : threads_) {
+        clockid_t clock{};
+        timespec taken{};
+        // The threads live as long as this does, so their clocks can be read.
+        HV_EXPECT(pthread_getcpuclockid(const_cast<std::thread&>(thread).native_handle(), &clock) ==
+                  0);
+        HV_EXPECT(clock_gettime(clock, &taken) == 0);
+        sum += std::chrono::seconds(taken.tv_sec) + std::chrono::nanoseconds(taken.tv_nsec);
+    }
+    return sum;
 }
 
 void WorkerPool::DoRun(int count, void (*piece)(void* context, int i), void* context) {
@@ -60,8 +76,8 @@ void WorkerPool::DoRun(int count, void (*piece)(void* context, int i), void* con
         WaitWhile(unfinished_, left);
 }
 
-void WorkerPool::Work(int index, const ThreadSchedule& schedule) {
-    NameThisThread("worker-" + std::to_string(index));
+void WorkerPool::Work(int index, const std::string& name, const ThreadSchedule& schedule) {
+    NameThisThread(name + "-" + std::to_string(index));
     const auto applied = Apply(schedule);
     if (!applied && index == 1) refusal_ = applied.error();
     std::uint32_t seen = 0;

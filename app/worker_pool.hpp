@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <thread>
@@ -11,7 +12,7 @@
 
 namespace hitchview::app {
 
-/// A fixed set of threads (`worker-1` ...) that share the pieces of one job at a time with the
+/// A fixed set of threads (`<name>-1` ...) that share the pieces of one job at a time with the
 /// calling thread. A frame has many small jobs: a thread that has nothing to do looks for the next
 /// one for some tens of microseconds before it sleeps, unless it would take the CPU from another
 /// of the pool. Takes no memory after construction. Run: one caller at a time, fewer than 2^32
@@ -20,17 +21,21 @@ class WorkerPool final : public algo::TaskRunner {
  public:
     /// `workers` >= 1 counts the calling thread: 1 makes no threads. Returns when the threads run,
     /// scheduled as asked for; the calling thread is left as it is.
-    explicit WorkerPool(int workers, const ThreadSchedule& schedule = {});
+    explicit WorkerPool(int workers, const ThreadSchedule& schedule = {},
+                        const std::string& name = "worker");
     ~WorkerPool() override;
     WorkerPool(const WorkerPool&) = delete;
     WorkerPool& operator=(const WorkerPool&) = delete;
+
+    /// CPU time that its threads have taken; without the calling thread's.
+    [[nodiscard]] std::chrono::nanoseconds cpu_time() const;
 
     /// What the kernel refused of the schedule, in words; empty if nothing.
     [[nodiscard]] const std::string& refusal() const { return refusal_; }
 
  private:
     void DoRun(int count, void (*piece)(void* context, int i), void* context) override;
-    void Work(int index, const ThreadSchedule& schedule);
+    void Work(int index, const std::string& name, const ThreadSchedule& schedule);
     void TakePieces();
     template <typename Counter>
     void WaitWhile(const Counter& counter, std::uint32_t value) const;

@@ -5,6 +5,7 @@
 
 #include "app/jpeg_encoder.hpp"
 #include "app/jpeg_picture.hpp"
+#include "app/worker_pool.hpp"
 #include "tests/support/i420_picture.hpp"
 
 namespace hitchview::app {
@@ -58,6 +59,7 @@ TEST_P(JpegEncoderSizeTest, DecodingGivesThePictureBack) {
 INSTANTIATE_TEST_SUITE_P(Sizes, JpegEncoderSizeTest,
                          testing::Values(Picture{"panorama", 2048, 360},
                                          Picture{"not_whole_blocks", 1100, 522},
+                                         Picture{"last_slice_of_two_rows", 64, 50},
                                          Picture{"smallest", 2, 2}, Picture{"one_block", 16, 16}),
                          [](const auto& test) { return test.param.name; });
 
@@ -82,6 +84,39 @@ TEST(JpegEncoderTest, RowsWithGapsBetweenThemAreReadByTheirStride) {
     const std::vector<std::uint8_t> expected(first.begin(), first.end());
     const auto second = encoder.Encode(view).value();
     EXPECT_EQ(std::vector<std::uint8_t>(second.begin(), second.end()), expected);
+}
+
+/// The same picture from a compressor that knows nothing of slices.
+cv::Mat DecodedWithoutSlices(const I420Picture& picture, int quality) {
+    const hal::FrameFormat format = picture.format();
+    JpegSlice whole(format, 0, format.height_px, 0);
+    std::vector<std::uint8_t> memory(whole.LargestBytes());
+    cv::Mat decoded;
+    EXPECT_TRUE(DecodeJpeg(whole.Compress(picture.view(), quality, memory),
+                           {format.width_px, format.height_px}, decoded));
+    return decoded;
+}
+
+TEST(JpegEncoderTest, SlicesCannotBeSeen) {
+    for (const auto& [width, height] : {std::pair{640, 360}, {64, 50}, {4096, 720}, {33 * 2, 18}}) {
+        const auto picture = I420Picture::Noise(width, height, 40, 7);
+        JpegEncoder encoder(picture.format(), {.budget_bytes = 9'000'000, .highest_quality = 85});
+        cv::Mat decoded;
+        ASSERT_TRUE(DecodeJpeg(encoder.Encode(picture.view()).value(), {width, height}, decoded));
+        EXPECT_EQ(cv::norm(decoded, DecodedWithoutSlices(picture, 85), cv::NORM_INF), 0) << width;
+    }
+}
+
+TEST(JpegEncoderTest, TheBytesDoNotDependOnTheThreads) {
+    const auto picture = I420Picture::Noise(640, 362, 60, 3);
+    JpegEncoder alone(picture.format(), {});
+    JpegEncoder shared(picture.format(), {});
+    WorkerPool workers(3);
+    for (int i = 0; i < 20; ++i) {
+        const auto expected = alone.Encode(picture.view()).value();
+        const auto jpeg = shared.Encode(picture.view(), workers).value();
+        ASSERT_TRUE(std::ranges::equal(jpeg, expected));
+    }
 }
 
 TEST(JpegEncoderTest, TheBudgetHoldsOnNoise) {
