@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 #include "hal/frame_pool.hpp"
 #include "hal/pool_level.hpp"
@@ -8,7 +9,18 @@
 
 namespace hitchview::hal {
 
-/// Timestamped frames from one camera. Thread: the one that calls WaitFrame.
+/// What became of a camera's frames since it was opened first.
+struct CameraCounts {
+    std::uint64_t delivered = 0;
+    std::uint64_t lost = 0;       ///< gaps of the device's sequence numbers
+    std::uint64_t corrupted = 0;  ///< came, and were damaged
+    /// Frames that the time stamps lack and the sequence numbers do not (steps of more than 1.5
+    /// periods).
+    std::uint64_t lost_unnumbered = 0;
+    std::uint64_t reopened = 0;  ///< how often the device came back
+};
+
+/// Timestamped frames from one camera. Thread: the one that calls WaitFrame and Reopen.
 class Camera {
  public:
     virtual ~Camera() = default;
@@ -24,12 +36,23 @@ class Camera {
         return DoWaitFrame(timeout);
     }
 
+    /// After kDisconnected: tries once to have the device again, in the same format and without
+    /// taking memory from the heap. Frames that are lent stay valid. kNotFound: it is not there;
+    /// kUnsupported: it came back as another device, or this camera cannot be reopened; kFailed:
+    /// see the log. Try again later.
+    Result<Done> Reopen() { return DoReopen(); }
+
+    /// Any thread.
+    [[nodiscard]] CameraCounts counts() const { return DoCounts(); }
+
     /// The frames that it can lend. Any thread.
     [[nodiscard]] PoolLevel pool() const { return DoPool(); }
 
  private:
     [[nodiscard]] virtual const FrameFormat& DoFormat() const = 0;
     virtual Result<FrameLease> DoWaitFrame(std::chrono::milliseconds timeout) = 0;
+    virtual Result<Done> DoReopen() { return Error::kUnsupported; }
+    [[nodiscard]] virtual CameraCounts DoCounts() const { return {}; }
     [[nodiscard]] virtual PoolLevel DoPool() const { return {}; }
 };
 

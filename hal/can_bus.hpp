@@ -18,6 +18,14 @@ struct CanFrame {
     Instant received_at{};
 };
 
+/// What became of a bus's frames since it was opened.
+struct CanCounts {
+    std::uint64_t delivered = 0;
+    std::uint64_t dropped = 0;         ///< the kernel had no room for them
+    std::uint64_t errors = 0;          ///< error frames
+    std::uint64_t disconnections = 0;  ///< interface down, or controller bus-off
+};
+
 /// Frames received from one CAN bus. Thread: the one that calls WaitFrame.
 class CanBus {
  public:
@@ -25,14 +33,19 @@ class CanBus {
 
     /// Blocks until a frame comes, at most `timeout` (> 0).
     /// kTimeout: the bus is silent; ordinary. kEndOfStream: the recording is over.
-    /// kDisconnected: the interface is down or the controller is bus-off.
+    /// kDisconnected: the interface is down or the controller is bus-off; call again, frames come
+    /// once it is back.
     Result<CanFrame> WaitFrame(std::chrono::milliseconds timeout) {
         HV_EXPECT(timeout.count() > 0);
         return DoWaitFrame(timeout);
     }
 
+    /// Any thread.
+    [[nodiscard]] CanCounts counts() const { return DoCounts(); }
+
  private:
     virtual Result<CanFrame> DoWaitFrame(std::chrono::milliseconds timeout) = 0;
+    [[nodiscard]] virtual CanCounts DoCounts() const { return {}; }
 };
 
 }  // namespace hitchview::hal
