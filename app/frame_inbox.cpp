@@ -1,0 +1,88 @@
+#include "app/frame_inbox.hpp"
+
+#include <utility>
+
+namespace hitchview::app {
+
+void FrameInbox::Put(std::size_t camera, hal::FrameLease frame, hal::Instant now) {
+    const std::lock_guard lock(mutex_);
+    if (closed_) return;
+    Place& place = places_[camera];
+    place.pace.Add(frame.view().header);
+    auto& [head, next] = place.frames;
+    if (head && next) {
+        head = std::move(next);
+        ++place.counts.superseded;
+    }
+    (head ? next : head) = std::move(frame);
+    place.heard_at = now;
+    place.connected = true;
+    ++place.counts.put;
+    changed_.notify_one();
+}
+
+void FrameInbox::SetConnected(std::size_t camera, bool connected) {
+    const std::lock_guard lock(mutex_);
+    places_[camera].connected = connected;
+    changed_.notify_one();
+}
+
+void FrameInbox::Close() {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    for (Place& place : places_) {
+        for (hal::FrameLease& frame : place.frames) frame.Release();
+    }
+}
+
+PendingFrames FrameInbox::Visit::Pending(hal::Instant now, hal::Instant patience) const {
+    PendingFrames pending;
+    for (std::size_t i = 0; i < kMaxCameras; ++i) {
+        const Place& place = inbox_.places_[i];
+        const auto& [head, next] = place.frames;
+        if (head) pending.heads[i] = head.view().header.captured_at;
+        pending.followed[i] = static_cast<bool>(next);
+        pending.awaited[i] =
+            i < inbox_.cameras_ && place.connected && now - place.heard_at < patience;
+    }
+    return pending;
+}
+
+hal::FrameLease FrameInbox::Visit::Take(std::size_t camera) {
+    Place& place = inbox_.places_[camera];
+    HV_EXPECT(place.frames[0]);
+    ++place.counts.taken;
+    return std::exchange(place.frames[0], std::move(place.frames[1]));
+}
+
+void FrameInbox::Visit::SetAside(const CameraMask& cameras) {
+    for (std::size_t i = 0; i < kMaxCameras; ++i) {
+        if (!cameras[i]) continue;
+        Place& place = inbox_.places_[i];
+        place.frames[0] = std::move(place.frames[1]);
+        ++place.counts.set_aside;
+    }
+}
+
+void FrameInbox::Visit::Wait(std::chrono::nanoseconds timeout) {
+    inbox_.changed_.wait_for(lock_, timeout);
+}
+
+InboxCounts FrameInbox::counts(std::size_t camera) const {
+    const std::lock_guard lock(mutex_);
+    return places_[camera].counts;
+}
+
+CameraPace FrameInbox::pace(std::size_t camera) const {
+    const std::lock_guard lock(mutex_);
+    return places_[camera].pace;
+}
+
+CameraMask FrameInbox::connected() const {
+    const std::lock_guard lock(mutex_);
+    CameraMask connected;
+    for (std::size_t i = 0; i < kMaxCameras; ++i) connected[i] = places_[i].connected;
+    return connected;
+}
+
+}  // namespace hitchview::app

@@ -1,0 +1,90 @@
+#include "app/live_frame_synchronizer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hitchview::app {
+
+LiveFrameSynchronizer::LiveFrameSynchronizer(std::vector<LiveCamera> cameras, hal::Clock& clock,
+                                             hal::Instant period, hal::Instant tolerance)
+    : cameras_(std::move(cameras)),
+      clock_(clock),
+      period_(period),
+      rule_(period, tolerance),
+      inbox_(cameras_.size(), clock.Now()),
+      next_empty_at_(clock.Now() + kPatience * period) {
+    HV_EXPECT(cameras_.size() <= kMaxCameras);
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+        threads_.push_back(std::make_unique<CaptureThread>(*cameras_[i].camera, cameras_[i].name, i,
+                                                           inbox_, clock_));
+    }
+}
+
+LiveFrameSynchronizer::~LiveFrameSynchronizer() {
+    threads_.clear();
+    inbox_.Close();
+}
+
+FrameSet LiveFrameSynchronizer::WaitSet() {
+    FrameInbox::Visit visit(inbox_);
+    while (true) {
+        const hal::Instant now = clock_.Now();
+        const SetRule::Verdict verdict = rule_.Judge(visit.Pending(now, kPatience * period_), now);
+        visit.SetAside(verdict.set_aside);
+        if (verdict.taken.any()) {
+            next_empty_at_ = now + kPatience * period_;
+            return TakeSet(visit, verdict.taken);
+        }
+        if (now >= next_empty_at_) {
+            next_empty_at_ = now + period_;
+            return EmptySet(now);
+        }
+        visit.Wait(std::min(verdict.ask_again_at, next_empty_at_) - now);
+    }
+}
+
+FrameSet LiveFrameSynchronizer::TakeSet(FrameInbox::Visit& visit, const CameraMask& taken) {
+    FrameSet set;
+    bool first = true;
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+        if (!taken[i]) {
+            set.cameras_missing |= 1U << i;
+            continue;
+        }
+        hal::FrameLease frame = visit.Take(i);
+        const hal::Instant at = frame.view().header.captured_at;
+        set.captured_from = first ? at : std::min(set.captured_from, at);
+        set.captured_until = first ? at : std::max(set.captured_until, at);
+        first = false;
+        set.leases[cameras_[i].unit][cameras_[i].index_in_unit] = std::move(frame);
+    }
+    Number(set, set.captured_until);
+    ++(set.cameras_missing == 0 ? counts_.complete : counts_.partial);
+    spread_.Add(set.captured_until - set.captured_from);
+    return set;
+}
+
+FrameSet LiveFrameSynchronizer::EmptySet(hal::Instant now) {
+    FrameSet set;
+    set.captured_from = set.captured_until = now;
+    set.cameras_missing = (1U << cameras_.size()) - 1;
+    Number(set, now);
+    ++counts_.empty;
+    return set;
+}
+
+void LiveFrameSynchronizer::Number(FrameSet& set, hal::Instant moment) {
+    const bool first = counts_.complete + counts_.partial + counts_.empty == 0;
+    const double periods =
+        static_cast<double>((moment - newest_set_).count()) / static_cast<double>(period_.count());
+    const auto steps = static_cast<std::uint32_t>(std::max(1L, std::lround(periods)));
+    if (!first) {
+        sequence_ += steps;
+        counts_.skipped += steps - 1;
+    }
+    newest_set_ = moment;
+    set.sequence = sequence_;
+}
+
+}  // namespace hitchview::app

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/capture_thread.hpp"
+#include "app/frame_inbox.hpp"
+#include "app/frame_set.hpp"
+#include "app/set_rule.hpp"
+#include "app/stage_times.hpp"
+#include "hal/clock.hpp"
+
+namespace hitchview::app {
+
+/// One live camera and what it is called.
+struct LiveCamera {
+    hal::Camera* camera = nullptr;
+    std::string name;
+    algo::Unit unit = algo::Unit::kTractor;
+    std::size_t index_in_unit = 0;
+};
+
+struct SetCounts {
+    std::uint64_t complete = 0;  ///< of all cameras of the rig
+    std::uint64_t partial = 0;   ///< of some
+    std::uint64_t empty = 0;     ///< of none: nothing to show came for long
+    std::uint64_t skipped = 0;   ///< periods that have no set
+};
+
+/// Makes frame sets of cameras that run at their own pace: see SetRule. Where no camera gives
+/// anything for kPatience periods, sets come without frames at the cameras' pace, so that display
+/// units are told. Takes no memory after construction. Thread: the run loop's.
+class LiveFrameSynchronizer {
+ public:
+    static constexpr int kPatience = 3;  ///< periods after which a silent camera is not awaited
+
+    /// Starts to capture. `cameras`, at most kMaxCameras, and `clock` must outlive it.
+    LiveFrameSynchronizer(std::vector<LiveCamera> cameras, hal::Clock& clock, hal::Instant period,
+                          hal::Instant tolerance);
+    ~LiveFrameSynchronizer();
+
+    /// Blocks until there is a set, about kPatience periods at most. Sets are numbered by the
+    /// periods between their newest frames: a gap is sets that nobody had time for.
+    FrameSet WaitSet();
+
+    [[nodiscard]] const SetCounts& counts() const { return counts_; }
+    /// From the oldest to the newest exposure of a set.
+    [[nodiscard]] const StageTimes& spread() const { return spread_; }
+    [[nodiscard]] const FrameInbox& inbox() const { return inbox_; }
+    [[nodiscard]] const std::vector<LiveCamera>& cameras() const { return cameras_; }
+
+ private:
+    FrameSet EmptySet(hal::Instant now);
+    FrameSet TakeSet(FrameInbox::Visit& visit, const CameraMask& taken);
+    void Number(FrameSet& set, hal::Instant moment);
+
+    std::vector<LiveCamera> cameras_;
+    hal::Clock& clock_;
+    hal::Instant period_;
+    SetRule rule_;
+    FrameInbox inbox_;
+    SetCounts counts_;
+    StageTimes spread_;
+    hal::Instant next_empty_at_;
+    std::uint32_t sequence_ = 0;
+    hal::Instant newest_set_{};
+    std::vector<std::unique_ptr<CaptureThread>> threads_;  // last: they use the inbox
+};
+
+}  // namespace hitchview::app
