@@ -88,6 +88,7 @@ hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, int he
     }
     if (board->period_.count() == 0) board->period_ = kDefaultPeriod;
     if (const auto can = board->OpenCanBus(config); !can) return can.error();
+    board->sets_ = std::make_unique<RecordedFrameSynchronizer>(board->cameras_);
     return board;
 }
 

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "app/config.hpp"
+#include "app/live_frame_synchronizer.hpp"
+#include "app/recorded_frame_synchronizer.hpp"
 #include "app/rig_geometry.hpp"
 #include "hal/camera.hpp"
 #include "hal/can_bus.hpp"
@@ -26,14 +28,17 @@ class Board {
     Board(const Board&) = delete;
     Board& operator=(const Board&) = delete;
 
-    using Cameras = algo::PerUnit<std::vector<std::unique_ptr<hal::Camera>>>;
     [[nodiscard]] Cameras& cameras() { return cameras_; }
+    /// Frame sets of its cameras; those of recordings start with the first frames.
+    [[nodiscard]] FrameSynchronizer& sets() { return *sets_; }
+    /// The same where the cameras run at their own pace, otherwise null: recordings and simulations
+    /// deliver as fast as they are read.
+    [[nodiscard]] LiveFrameSynchronizer* live() { return live_; }
     /// Null when the rig names no CAN bus.
     [[nodiscard]] hal::CanBus* can_bus() { return can_bus_.get(); }
     [[nodiscard]] hal::Clock& clock() { return *clock_; }
     /// Time from one frame set to the next.
     [[nodiscard]] hal::Instant period() const { return period_; }
-    /// Recordings and simulations deliver as fast as they are read; live cameras at their own pace.
     [[nodiscard]] CameraFormats formats() const;
 
     hal::Checked<std::unique_ptr<hal::Publisher>> OpenPublisher(const PublishConfig& config);
@@ -50,6 +55,8 @@ class Board {
     Cameras cameras_;
     std::unique_ptr<hal::CanBus> can_bus_;
     hal::Instant period_{};
+    std::unique_ptr<FrameSynchronizer> sets_;  // last: it uses cameras and clock
+    LiveFrameSynchronizer* live_ = nullptr;
 };
 
 }  // namespace hitchview::app

@@ -70,7 +70,10 @@ void FrameInbox::Visit::Wait(std::chrono::nanoseconds timeout) {
 
 InboxCounts FrameInbox::counts(std::size_t camera) const {
     const std::lock_guard lock(mutex_);
-    return places_[camera].counts;
+    const Place& place = places_[camera];
+    InboxCounts counts = place.counts;
+    counts.pending = (place.frames[0] ? 1U : 0U) + (place.frames[1] ? 1U : 0U);
+    return counts;
 }
 
 CameraPace FrameInbox::pace(std::size_t camera) const {

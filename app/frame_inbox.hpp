@@ -17,6 +17,7 @@ struct InboxCounts {
     std::uint64_t taken = 0;       ///< by a set
     std::uint64_t superseded = 0;  ///< two newer ones came before a set was made
     std::uint64_t set_aside = 0;   ///< no set could have them: see SetRule
+    std::uint64_t pending = 0;     ///< wait for a set; the four are all that were put in
 };
 
 /// The two newest frames of each camera, from the capture threads to the one that makes sets of

@@ -1,25 +1,21 @@
 #pragma once
 
-#include "app/board.hpp"
 #include "app/frame_set.hpp"
+#include "hal/result.hpp"
 
 namespace hitchview::app {
 
-/// Makes frame sets of the cameras' frames. Recordings and simulations: frame i of every camera
-/// forms set i, none is lost; the shortest recording ends the run. Thread: the run loop's.
+/// Makes frame sets of the cameras' frames. Thread: the run loop's.
 class FrameSynchronizer {
  public:
-    explicit FrameSynchronizer(Board::Cameras& cameras) : cameras_(cameras) {}
+    virtual ~FrameSynchronizer() = default;
 
-    /// A damaged frame is a missing camera of that set.
-    /// kEndOfStream: a camera has no more frames. Other errors: the camera that failed.
-    hal::Result<FrameSet> WaitSet();
+    /// Blocks until there is a set. Its sequence steps by one, more where sets are missing.
+    /// kEndOfStream: a recording is over. Other errors: the camera that failed.
+    hal::Result<FrameSet> WaitSet() { return DoWaitSet(); }
 
  private:
-    hal::Result<hal::FrameLease> WaitFrame(hal::Camera& camera) const;
-
-    Board::Cameras& cameras_;
-    std::uint32_t next_sequence_ = 0;
+    virtual hal::Result<FrameSet> DoWaitSet() = 0;
 };
 
 }  // namespace hitchview::app

@@ -22,11 +22,15 @@ LiveFrameSynchronizer::LiveFrameSynchronizer(std::vector<LiveCamera> cameras, ha
 }
 
 LiveFrameSynchronizer::~LiveFrameSynchronizer() {
-    threads_.clear();
+    Finish();
     inbox_.Close();
 }
 
-FrameSet LiveFrameSynchronizer::WaitSet() {
+void LiveFrameSynchronizer::Finish() {
+    threads_.clear();
+}
+
+hal::Result<FrameSet> LiveFrameSynchronizer::DoWaitSet() {
     FrameInbox::Visit visit(inbox_);
     while (true) {
         const hal::Instant now = clock_.Now();
@@ -85,6 +89,15 @@ void LiveFrameSynchronizer::Number(FrameSet& set, hal::Instant moment) {
     }
     newest_set_ = moment;
     set.sequence = sequence_;
+}
+
+LiveSummary LiveFrameSynchronizer::Summarise() const {
+    LiveSummary summary{counts_, spread_, {}};
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+        summary.cameras.push_back({cameras_[i].name, cameras_[i].camera->counts(), inbox_.counts(i),
+                                   inbox_.pace(i).period_ms()});
+    }
+    return summary;
 }
 
 }  // namespace hitchview::app

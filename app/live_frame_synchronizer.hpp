@@ -6,7 +6,7 @@
 
 #include "app/capture_thread.hpp"
 #include "app/frame_inbox.hpp"
-#include "app/frame_set.hpp"
+#include "app/frame_synchronizer.hpp"
 #include "app/set_rule.hpp"
 #include "app/stage_times.hpp"
 #include "hal/clock.hpp"
@@ -28,29 +28,41 @@ struct SetCounts {
     std::uint64_t skipped = 0;   ///< periods that have no set
 };
 
+/// What became of the frames of one live camera.
+struct LiveCameraSummary {
+    std::string name;
+    hal::CameraCounts device;
+    InboxCounts inbox;                  ///< of those that the device delivered
+    std::optional<double> period_ms{};  ///< by the camera's own clock
+};
+
+struct LiveSummary {
+    SetCounts sets;
+    StageTimes spread;  ///< from the oldest to the newest exposure of a set
+    std::vector<LiveCameraSummary> cameras;
+};
+
 /// Makes frame sets of cameras that run at their own pace: see SetRule. Where no camera gives
 /// anything for kPatience periods, sets come without frames at the cameras' pace, so that display
-/// units are told. Takes no memory after construction. Thread: the run loop's.
-class LiveFrameSynchronizer {
+/// units are told. Sets are numbered by the periods between their newest frames: a gap is sets that
+/// nobody had time for. Takes no memory after construction.
+class LiveFrameSynchronizer final : public FrameSynchronizer {
  public:
     static constexpr int kPatience = 3;  ///< periods after which a silent camera is not awaited
 
     /// Starts to capture. `cameras`, at most kMaxCameras, and `clock` must outlive it.
     LiveFrameSynchronizer(std::vector<LiveCamera> cameras, hal::Clock& clock, hal::Instant period,
                           hal::Instant tolerance);
-    ~LiveFrameSynchronizer();
-
-    /// Blocks until there is a set, about kPatience periods at most. Sets are numbered by the
-    /// periods between their newest frames: a gap is sets that nobody had time for.
-    FrameSet WaitSet();
+    ~LiveFrameSynchronizer() override;
 
     [[nodiscard]] const SetCounts& counts() const { return counts_; }
-    /// From the oldest to the newest exposure of a set.
-    [[nodiscard]] const StageTimes& spread() const { return spread_; }
-    [[nodiscard]] const FrameInbox& inbox() const { return inbox_; }
-    [[nodiscard]] const std::vector<LiveCamera>& cameras() const { return cameras_; }
+    /// Ends the capture. No set may be asked for afterwards.
+    void Finish();
+    /// After Finish. Takes memory.
+    [[nodiscard]] LiveSummary Summarise() const;
 
  private:
+    hal::Result<FrameSet> DoWaitSet() override;
     FrameSet EmptySet(hal::Instant now);
     FrameSet TakeSet(FrameInbox::Visit& visit, const CameraMask& taken);
     void Number(FrameSet& set, hal::Instant moment);

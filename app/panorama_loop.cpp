@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "app/frame_synchronizer.hpp"
-
 namespace hitchview::app {
 namespace {
 
@@ -41,7 +39,8 @@ PanoramaLoop::PanoramaLoop(const Parts& parts, const RunOptions& options, RunSum
 
 hal::Checked<hal::Done> PanoramaLoop::Run(const std::atomic<bool>& stop, const ShownHook& hook) {
     const hal::Instant ready = deadlines_.start();
-    parts_.outputs.Start(ready);
+    // Live cameras stamp their frames by the clock, recordings from their start.
+    parts_.outputs.Start(parts_.board.live() != nullptr ? hal::Instant{} : ready);
     MemoryWatch memory(options_.trap_alloc);
     auto done = ShowSets(stop, hook);
     if (done) done = ShowHeldBack(hook);
@@ -53,13 +52,16 @@ hal::Checked<hal::Done> PanoramaLoop::Run(const std::atomic<bool>& stop, const S
 
 hal::Checked<hal::Done> PanoramaLoop::ShowSets(const std::atomic<bool>& stop,
                                                const ShownHook& hook) {
-    FrameSynchronizer synchronizer(parts_.board.cameras());
     for (std::uint64_t taken = 0; !stop && !Limited(taken); ++taken) {
         const hal::Instant asked = parts_.board.clock().Now();
-        auto set = synchronizer.WaitSet();
+        auto set = parts_.board.sets().WaitSet();
         if (!set && set.error() == hal::Error::kEndOfStream) break;
         if (!set) return CameraFailure(set.error());
-        if (options_.realtime && !WaitForTurn(set->sequence, asked)) continue;
+        if (parts_.board.live() != nullptr) {
+            CatchUp();
+        } else if (options_.realtime && !WaitForTurn(set->sequence, asked)) {
+            continue;
+        }
         const ShownPanorama* const shown = parts_.pipeline.Process(std::move(*set));
         CountDeadline();
         if (shown == nullptr) continue;
@@ -85,6 +87,14 @@ bool PanoramaLoop::WaitForTurn(std::uint32_t sequence, hal::Instant asked) {
     if (turn.hurried && parts_.motion.LightenNextStep()) ++summary_.lightened;
     clock.SleepUntil(turn.due);
     return true;
+}
+
+/// Live cameras do not wait: what was missed meanwhile is gone, and this set should take less.
+void PanoramaLoop::CatchUp() {
+    const std::uint64_t skipped = parts_.board.live()->counts().skipped;
+    const bool hurried = skipped > summary_.dropped;
+    summary_.dropped = skipped;
+    if (hurried && parts_.motion.LightenNextStep()) ++summary_.lightened;
 }
 
 void PanoramaLoop::CountDeadline() {

@@ -27,6 +27,7 @@ class PanoramaLoop {
     hal::Checked<hal::Done> ShowSets(const std::atomic<bool>& stop, const ShownHook& hook);
     hal::Checked<hal::Done> ShowHeldBack(const ShownHook& hook);
     hal::Checked<hal::Done> Show(const ShownPanorama& shown, const ShownHook& hook);
+    void CatchUp();
     bool WaitForTurn(std::uint32_t sequence, hal::Instant asked);
     void CountDeadline();
     [[nodiscard]] bool Limited(std::uint64_t taken) const;

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "app/evaluation_statistics.hpp"
+
 namespace hitchview::app {
 namespace {
 
@@ -104,6 +106,52 @@ json EmptySeam() {
     return {{"median_px", nullptr}, {"p95_px", nullptr}, {"worst_frame_px", nullptr}};
 }
 
+/// Deviation of the camera's clock from the middle one of the rig.
+json Drift(const LiveCameraSummary& camera, const std::optional<double>& middle_ms) {
+    if (!camera.period_ms || !middle_ms) return nullptr;
+    return 1e6 * (*camera.period_ms / *middle_ms - 1);
+}
+
+std::optional<double> MiddlePeriod(const LiveSummary& live) {
+    std::vector<double> periods;
+    for (const LiveCameraSummary& camera : live.cameras) {
+        if (camera.period_ms) periods.push_back(*camera.period_ms);
+    }
+    return Quantile(periods, 0.5);
+}
+
+json LiveCameras(const LiveSummary& live) {
+    const std::optional<double> middle_ms = MiddlePeriod(live);
+    json cameras = json::object();
+    for (const LiveCameraSummary& camera : live.cameras) {
+        cameras[camera.name] = {{"delivered", camera.device.delivered},
+                                {"lost", camera.device.lost},
+                                {"lost_unnumbered", camera.device.lost_unnumbered},
+                                {"corrupted", camera.device.corrupted},
+                                {"reopened", camera.device.reopened},
+                                {"taken", camera.inbox.taken},
+                                {"superseded", camera.inbox.superseded},
+                                {"set_aside", camera.inbox.set_aside},
+                                {"pending", camera.inbox.pending},
+                                {"period_ms", OrNull(camera.period_ms)},
+                                {"drift_ppm", Drift(camera, middle_ms)}};
+    }
+    return cameras;
+}
+
+/// Null for recordings and simulations.
+json Live(const RunSummary& run) {
+    if (!run.live) return nullptr;
+    const SetCounts& sets = run.live->sets;
+    return {{"sets",
+             {{"complete", sets.complete},
+              {"partial", sets.partial},
+              {"empty", sets.empty},
+              {"skipped", sets.skipped}}},
+            {"spread", StageJson(run.live->spread)},
+            {"cameras", LiveCameras(*run.live)}};
+}
+
 /// Null for a rig that cannot tell it.
 json Articulation(const RunSummary& run) {
     if (!run.ring || run.cameras[algo::Unit::kTrailer] == 0 || run.frames == 0) return nullptr;
@@ -136,6 +184,7 @@ json MakeReport(const RunSummary& run, const json& quality) {
         {"calibration_id", run.calibration_id.empty() ? json() : json(run.calibration_id)}};
     AddMemory(run.memory, report);
     report["pools"] = Pools(run);
+    report["live"] = Live(run);
     for (const algo::Unit unit : algo::kUnits) {
         if (run.cameras[unit] > 0) report["units"][ToString(unit)] = EmptyUnit();
     }

@@ -6,7 +6,6 @@
 #include "algo/offline_unified_vertex_motion.hpp"
 #include "algo/unified_vertex_motion.hpp"
 #include "app/board.hpp"
-#include "app/frame_synchronizer.hpp"
 #include "app/panorama_loop.hpp"
 #include "app/real_time.hpp"
 #include "app/run_outputs.hpp"
@@ -76,9 +75,8 @@ Motion MakeMotion(const RigGeometry& rig, const algo::UnifiedVertexMotionOptions
 
 /// Looks at the first frame sets; the cameras are used up by that.
 hal::Checked<hal::Done> Prime(Board& board, Pipeline& pipeline) {
-    FrameSynchronizer synchronizer(board.cameras());
     for (int i = 0; i < kPrimeSets; ++i) {
-        const auto set = synchronizer.WaitSet();
+        const auto set = board.sets().WaitSet();
         if (!set && set.error() == hal::Error::kEndOfStream && i > 0) break;
         if (!set) return CameraFailure(set.error());
         if (pipeline.Prime(set.value())) break;
@@ -95,9 +93,8 @@ bool Limited(const RunOptions& options, std::uint64_t taken) {
 hal::Checked<hal::Done> Learn(Board& board, algo::OfflineUnifiedVertexMotion& motion,
                               const RunOptions& options, algo::TaskRunner& workers,
                               const std::atomic<bool>& stop) {
-    FrameSynchronizer synchronizer(board.cameras());
     for (std::uint64_t taken = 0; !stop && !Limited(options, taken); ++taken) {
-        const auto set = synchronizer.WaitSet();
+        const auto set = board.sets().WaitSet();
         if (!set && set.error() == hal::Error::kEndOfStream) break;
         if (!set) return CameraFailure(set.error());
         motion.Learn(Borrow(set.value()), workers);
@@ -124,6 +121,10 @@ RunSummary EmptySummary(const RigConfig& config, const Board& board, const RigGe
 void Complete(const RigConfig& config, Board& board, const RunOutputs& outputs,
               RunSummary& summary) {
     summary.dropped += outputs.dropped();
+    if (LiveFrameSynchronizer* const live = board.live()) {
+        live->Finish();
+        summary.live = live->Summarise();
+    }
     summary.publishing = outputs.times();
     for (const algo::Unit unit : algo::kUnits) {
         for (std::size_t i = 0; i < config.units[unit].cameras.size(); ++i)
@@ -155,6 +156,9 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     const int held = motion_options.lookahead_frames + 2;
     auto board = Board::Open(config, held);
     if (!board) return board.error();
+    if ((*board)->live() != nullptr && !options.realtime)
+        return config.file.string() +
+               ": its cameras are live: use run; the other verbs need recordings";
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
     if (!rig) return rig.error();
 
@@ -166,7 +170,7 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     Pipeline pipeline(rig.value(), *motion.any, workers);
     if (const auto primed = Prime(**board, pipeline); !primed) return primed.error();
     // A recording starts again from its first frame.
-    board = Board::Open(config, held);
+    if ((*board)->live() == nullptr) board = Board::Open(config, held);
     if (board && motion.offline != nullptr) {
         if (const auto learnt = Learn(**board, *motion.offline, options, workers, stop); !learnt)
             return learnt.error();

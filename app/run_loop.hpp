@@ -10,6 +10,7 @@
 #include "algo/paper_stages.hpp"
 #include "app/config.hpp"
 #include "app/heap_calls.hpp"
+#include "app/live_frame_synchronizer.hpp"
 #include "app/pipeline.hpp"
 #include "app/resources.hpp"
 
@@ -74,6 +75,7 @@ struct RunSummary {
     algo::PerUnit<int> cameras;
     MemorySummary memory{};
     bool ring = false;
+    std::optional<LiveSummary> live{};  ///< of cameras that run at their own pace
 };
 
 /// Sees every panorama that is shown, in order. Thread: the run loop's.

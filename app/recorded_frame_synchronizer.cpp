@@ -1,10 +1,10 @@
-#include "app/frame_synchronizer.hpp"
+#include "app/recorded_frame_synchronizer.hpp"
 
 #include <algorithm>
 
 namespace hitchview::app {
 
-hal::Result<hal::FrameLease> FrameSynchronizer::WaitFrame(hal::Camera& camera) const {
+hal::Result<hal::FrameLease> RecordedFrameSynchronizer::WaitFrame(hal::Camera& camera) const {
     constexpr std::chrono::milliseconds kPatience{1000};
     constexpr int kTries = 60;  // a recording on a slow disk is waited for
     for (int i = 0; i < kTries; ++i) {
@@ -14,7 +14,7 @@ hal::Result<hal::FrameLease> FrameSynchronizer::WaitFrame(hal::Camera& camera) c
     return hal::Error::kTimeout;
 }
 
-hal::Result<FrameSet> FrameSynchronizer::WaitSet() {
+hal::Result<FrameSet> RecordedFrameSynchronizer::DoWaitSet() {
     FrameSet set;
     set.sequence = next_sequence_++;
     int index = 0;

@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <bit>
+
+#include "app/live_frame_synchronizer.hpp"
+#include "drivers/steady_clock.hpp"
+
+namespace hitchview::app {
+namespace {
+
+using hal::Instant;
+using std::chrono::milliseconds;
+
+constexpr Instant kPeriod = milliseconds(10);
+
+/// Gives a frame at each period of the clock, and can be unplugged.
+class TickingCamera final : public hal::Camera {
+ public:
+    TickingCamera(hal::Clock& clock, Instant phase)
+        : clock_(clock), next_(clock.Now() + phase), pool_({16, 16}, 8) {}
+
+    void Plug(bool in) { plugged_ = in; }
+
+ private:
+    [[nodiscard]] const hal::FrameFormat& DoFormat() const override { return pool_.format(); }
+    hal::Result<hal::FrameLease> DoWaitFrame(milliseconds /*timeout*/) override {
+        clock_.SleepUntil(next_);
+        if (!plugged_) return hal::Error::kDisconnected;
+        const hal::FrameHeader header{sequence_++, next_};
+        next_ = std::max(next_ + kPeriod, clock_.Now() - kPeriod);
+        const auto slot = pool_.Take();
+        if (!slot) return hal::Error::kTimeout;
+        ++delivered_;
+        return pool_.Lease(*slot, header);
+    }
+    hal::Result<hal::Done> DoReopen() override {
+        if (!plugged_) return hal::Error::kNotFound;
+        next_ = clock_.Now() + kPeriod;
+        ++reopened_;
+        return hal::Done{};
+    }
+    [[nodiscard]] hal::CameraCounts DoCounts() const override {
+        return {.delivered = delivered_, .reopened = reopened_};
+    }
+
+    hal::Clock& clock_;
+    Instant next_;
+    hal::FramePool pool_;
+    std::atomic<bool> plugged_{true};
+    std::atomic<std::uint64_t> delivered_{0};
+    std::atomic<std::uint64_t> reopened_{0};
+    std::uint32_t sequence_ = 0;
+};
+
+class LiveFrameSynchronizerTest : public testing::Test {
+ protected:
+    LiveFrameSynchronizerTest() {
+        std::vector<LiveCamera> live;
+        for (std::size_t i = 0; i < cameras_.size(); ++i) {
+            const auto unit = i < 2 ? algo::Unit::kTractor : algo::Unit::kTrailer;
+            live.push_back({&cameras_[i], "camera" + std::to_string(i), unit, i % 2});
+        }
+        sets_.emplace(live, clock_, kPeriod, kPeriod);
+    }
+
+    /// Takes sets until one is as wanted; the number taken, or -1 if none of many was.
+    template <typename Wanted>
+    int TakeUntil(Wanted&& wanted) {
+        for (int i = 0; i < 1000; ++i) {
+            const auto answer = sets_->WaitSet();
+            const FrameSet& set = answer.value();
+            EXPECT_LE(set.captured_until - set.captured_from, kPeriod);
+            EXPECT_TRUE(set.sequence > sequence_ || i == 0);
+            sequence_ = set.sequence;
+            if (wanted(set)) return i;
+        }
+        return -1;
+    }
+    int TakeUntilMissing(std::uint32_t cameras) {
+        return TakeUntil([&](const FrameSet& set) { return set.cameras_missing == cameras; });
+    }
+
+    drivers::SteadyClock clock_;
+    std::array<TickingCamera, 4> cameras_{
+        TickingCamera(clock_, milliseconds(1)), TickingCamera(clock_, milliseconds(2)),
+        TickingCamera(clock_, milliseconds(2)), TickingCamera(clock_, milliseconds(3))};
+    std::optional<LiveFrameSynchronizer> sets_;
+    std::uint32_t sequence_ = 0;
+};
+
+TEST_F(LiveFrameSynchronizerTest, FramesGetToTheirUnitsAndPlaces) {
+    EXPECT_GE(TakeUntil([](const FrameSet& set) {
+                  if (set.cameras_missing != 0) return false;
+                  for (const algo::Unit unit : algo::kUnits) {
+                      if (!set.leases[unit][0] || !set.leases[unit][1] || set.leases[unit][2])
+                          return false;
+                  }
+                  return true;
+              }),
+              0);
+}
+
+TEST_F(LiveFrameSynchronizerTest, AnUnpluggedCameraIsMissingAndComesBack) {
+    EXPECT_GE(TakeUntilMissing(0), 0);
+    cameras_[2].Plug(false);
+    EXPECT_GE(TakeUntilMissing(0b0100), 0);
+    cameras_[2].Plug(true);
+    EXPECT_GE(TakeUntilMissing(0), 0);
+    sets_->Finish();
+    EXPECT_EQ(sets_->Summarise().cameras[2].device.reopened, 1U);
+}
+
+TEST_F(LiveFrameSynchronizerTest, WithoutAnyCameraSetsGoOnEmpty) {
+    for (TickingCamera& camera : cameras_) camera.Plug(false);
+    ASSERT_GE(TakeUntilMissing(0b1111), 0);
+    EXPECT_EQ(TakeUntilMissing(0b1111), 0) << "and the next one is as well";
+    EXPECT_GE(sets_->counts().empty, 2U);
+    cameras_[0].Plug(true);
+    EXPECT_GE(TakeUntilMissing(0b1110), 0);
+}
+
+TEST_F(LiveFrameSynchronizerTest, EveryFrameIsAccountedFor) {
+    for (int i = 0; i < 30; ++i) {
+        (void)sets_->WaitSet();
+        // Every third set takes longer than two periods.
+        if (i % 3 == 0) clock_.SleepUntil(clock_.Now() + 2 * kPeriod + kPeriod / 2);
+    }
+    sets_->Finish();
+    const LiveSummary summary = sets_->Summarise();
+    EXPECT_GT(summary.sets.skipped, 0U);
+    for (const LiveCameraSummary& camera : summary.cameras) {
+        EXPECT_EQ(camera.device.delivered, camera.inbox.put);
+        EXPECT_EQ(camera.inbox.put, camera.inbox.taken + camera.inbox.superseded +
+                                        camera.inbox.set_aside + camera.inbox.pending);
+        EXPECT_GT(camera.inbox.taken, 0U);
+    }
+}
+
+}  // namespace
+}  // namespace hitchview::app
