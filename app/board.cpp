@@ -14,7 +14,6 @@
 namespace hitchview::app {
 namespace {
 
-constexpr hal::Instant kDefaultPeriod{33'333'333};
 /// Frames that a decoder may be ahead of the reader.
 constexpr int kFramesAhead = 4;
 

@@ -45,24 +45,6 @@ CanvasConfig ReadCanvas(const YamlValue& value) {
     return canvas;
 }
 
-CameraConfig ReadCamera(const YamlValue& value, ConfigContext& context) {
-    CameraConfig camera;
-    YamlMap map = value.Map();
-    const YamlValue name = map.Required("name");
-    name.Read(camera.name);
-    if (!camera.name.empty() && !calib::IsName(camera.name)) {
-        name.Refuse("letters, digits and _ only");
-    } else if (!camera.name.empty() && !context.camera_names.insert(camera.name).second) {
-        name.Refuse("unique in the rig");
-    }
-    if (!ReadSource(map.Required("source"), "replay", context, camera.replay)) {
-        camera.source = CameraConfig::Source::kSimulated;
-        context.simulates_cameras = true;
-    }
-    map.Finish();
-    return camera;
-}
-
 UnitConfig ReadUnit(const YamlValue& value, Projection projection, ConfigContext& context) {
     UnitConfig unit;
     YamlMap map = value.Map();
@@ -88,6 +70,8 @@ algo::PerUnit<UnitConfig> ReadUnits(const YamlValue& value, Projection projectio
     if (context.camera_names.size() > kMaxCameras) {
         value.Refuse("units with at most 8 cameras in total");
     }
+    if (context.live_cameras > 0 && context.recorded_cameras > 0)
+        value.Refuse("units whose cameras are all live (v4l2), or none");
     map.Finish();
     return units;
 }
@@ -124,6 +108,17 @@ std::optional<std::chrono::nanoseconds> ReadPeriod(const YamlValue& value) {
     return std::chrono::nanoseconds(std::llround(period_ms * 1e6));
 }
 
+std::optional<std::chrono::nanoseconds> ReadSetTolerance(const YamlValue& value,
+                                                         const RigConfig& config,
+                                                         const ConfigContext& context) {
+    if (!value.given()) return std::nullopt;
+    if (context.live_cameras == 0) value.Refuse("absent unless the cameras are live (v4l2)");
+    const auto period = config.period.value_or(std::chrono::nanoseconds(kDefaultPeriod));
+    double tolerance_ms = 1;
+    value.Read({1, 1e-6 * static_cast<double>(period.count())}, tolerance_ms);
+    return std::chrono::nanoseconds(std::llround(tolerance_ms * 1e6));
+}
+
 RigConfig ReadRig(YamlMap& root, ConfigContext& context) {
     RigConfig config;
     int schema = 1;
@@ -138,6 +133,7 @@ RigConfig ReadRig(YamlMap& root, ConfigContext& context) {
     ReadThreads(root["threads"], config);
     config.real_time = ReadRealTime(root["real_time"]);
     config.period = ReadPeriod(root["period_ms"]);
+    config.set_tolerance = ReadSetTolerance(root["set_tolerance_ms"], config, context);
     config.can = ReadCan(root["can"], context);
     config.publish = ReadPublish(root["publish"]);
     root.Finish();

@@ -19,6 +19,8 @@ inline constexpr int kMaxCameras = 8;
 inline constexpr int kMaxLookaheadFrames = 10;
 inline constexpr int kMaxWorkers = 16;
 inline constexpr int kMaxCpus = 256;
+/// Of cameras and recordings whose pace nobody says.
+inline constexpr std::chrono::nanoseconds kDefaultPeriod{33'333'333};
 
 struct Size {
     int width_px = 0;
@@ -39,12 +41,34 @@ struct CanvasConfig {
     double ground_m = -0.4;    ///< cylinder: height of the ground in the unit frame. [-3, 0]
 };
 
+/// A setting of a device. What there is, and its range, the device knows.
+struct ControlConfig {
+    std::string name{};
+    std::string value{};  ///< a number, true or false, or the text of a menu's entry
+};
+
+/// A camera that runs at its own pace.
+struct LiveCameraConfig {
+    std::string device{};         ///< absolute path
+    Size size_px{1280, 720};      ///< even, [64, 4096]
+    std::string format = "best";  ///< best, nv12, nm12, uyvy, yuyv, mjpeg, grey
+    int input = -1;               ///< of a device with several. [0, 63]; -1: the one selected
+    int buffers = 0;              ///< [2, 32]; 0: what the program holds and what the device needs
+    int rotation_deg = 0;         ///< 0 or 180
+    bool horizontal_flip = false;
+    bool vertical_flip = false;
+    std::vector<ControlConfig> controls{};  ///< in the order of the file
+};
+
 struct CameraConfig {
-    enum class Source { kReplay, kSimulated };
+    enum class Source { kReplay, kSimulated, kV4l2 };
 
     std::string name{};  ///< letters, digits and _; unique in the rig
     Source source = Source::kReplay;
     std::filesystem::path replay{};  ///< video file, image sequence or LCM log; kReplay only
+    LiveCameraConfig live{};         ///< kV4l2 only
+
+    [[nodiscard]] bool IsLive() const { return source == Source::kV4l2; }
 };
 
 struct UnitConfig {
@@ -150,6 +174,9 @@ struct RigConfig {
     ThreadSchedule schedule{};  ///< of the pipeline and those
     RealTimeConfig real_time{};
     std::optional<std::chrono::nanoseconds> period{};  ///< [1, 1000] ms; otherwise the recording's
+    /// From the oldest to the newest frame of a set of live cameras, at most. [1 ms, period];
+    /// otherwise the period.
+    std::optional<std::chrono::nanoseconds> set_tolerance{};
     std::optional<CanConfig> can{};
     PublishConfig publish{};
 

@@ -17,6 +17,9 @@ struct ConfigContext {
     std::filesystem::path folder{};
     std::set<std::string> camera_names{};
     bool simulates_cameras = false;
+    std::set<std::string> devices{};
+    int live_cameras = 0;
+    int recorded_cameras = 0;  ///< and simulated
 };
 
 void ReadPath(const calib::YamlValue& value, const ConfigContext& context,
@@ -28,6 +31,8 @@ void ReadSize(const calib::YamlValue& value, const calib::Range<int>& width,
 bool ReadSource(const calib::YamlValue& value, const std::string& file_key,
                 const ConfigContext& context, std::filesystem::path& path);
 
+/// In config_camera.cpp.
+CameraConfig ReadCamera(const calib::YamlValue& value, ConfigContext& context);
 SimulationConfig ReadSimulation(const calib::YamlValue& value, const ConfigContext& context);
 StabilizationConfig ReadStabilization(const calib::YamlValue& value);
 /// Workers and their schedule.
