@@ -202,7 +202,7 @@ std::optional<Result<FrameLease>> V4l2Camera::Step(milliseconds timeout) {
     const auto queued = buffers_.Queue(device_);
     if (!queued && queued.error().error == Error::kDisconnected) return Lose(queued.error());
     const Woken woken = Wait(timeout);
-    if (woken.error) return Lose({Error::kDisconnected, "poll tells of an error", 0});
+    if (woken.error) return Lose(ReasonOfError());
     if (woken.event && TakeSourceChange(device_)) {
         Disconnect();
         const auto again = ReconnectAndStream();
@@ -225,6 +225,12 @@ V4l2Camera::Woken V4l2Camera::Wait(milliseconds timeout) {
     const int told = files[0].revents;
     return {(told & POLLIN) != 0, (told & POLLPRI) != 0,
             (told & (POLLERR | POLLHUP | POLLNVAL)) != 0};
+}
+
+V4l2Failure V4l2Camera::ReasonOfError() {
+    const auto refused = buffers_.Dequeue(device_);
+    return refused ? V4l2Failure{Error::kDisconnected, "poll tells of an error", 0}
+                   : refused.error();
 }
 
 void V4l2Camera::Drain() {

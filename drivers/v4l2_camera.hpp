@@ -115,6 +115,7 @@ class V4l2Camera final : public hal::Camera {
     /// Empty: nothing to hand out yet, wait on.
     std::optional<hal::Result<hal::FrameLease>> Step(std::chrono::milliseconds timeout);
     std::optional<hal::Result<hal::FrameLease>> TakeFrame();
+    V4l2Failure ReasonOfError();
     void Drain();
     std::optional<hal::Result<hal::FrameLease>> Lend(const V4l2Buffers::Filled& filled);
     std::optional<hal::Result<hal::FrameLease>> Decode(const V4l2Buffers::Filled& filled,

@@ -74,10 +74,11 @@ std::string FourccText(std::uint32_t fourcc) {
     return text;
 }
 
-hal::Range RangeOf(std::uint32_t quantization, std::uint32_t colorspace) {
+hal::Range RangeOf(std::uint32_t fourcc, std::uint32_t quantization, std::uint32_t colorspace) {
     if (quantization == V4L2_QUANTIZATION_FULL_RANGE) return hal::Range::kFull;
     if (quantization == V4L2_QUANTIZATION_LIM_RANGE) return hal::Range::kLimited;
-    return colorspace == V4L2_COLORSPACE_JPEG ? hal::Range::kFull : hal::Range::kLimited;
+    const bool full = fourcc == V4L2_PIX_FMT_GREY || colorspace == V4L2_COLORSPACE_JPEG;
+    return full ? hal::Range::kFull : hal::Range::kLimited;
 }
 
 std::optional<std::array<hal::Plane, 3>> PlanesOf(const V4l2Layout& layout,

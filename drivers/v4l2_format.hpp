@@ -35,9 +35,9 @@ const V4l2PixelFormat* FindV4l2PixelFormat(const std::string& name);
 /// "UYVY"; what cannot be printed, as '?'.
 std::string FourccText(std::uint32_t fourcc);
 
-/// v4l2_quantization and v4l2_colorspace as the kernel's default rule reads them for Y'CbCr: full
-/// range for JPEG's colours, limited otherwise, unless the driver says.
-hal::Range RangeOf(std::uint32_t quantization, std::uint32_t colorspace);
+/// How the kernel's default rule reads colours unless the driver says (v4l2_quantization): limited
+/// range, but full for JPEG's colours (v4l2_colorspace) and for grey, which is a sensor's own.
+hal::Range RangeOf(std::uint32_t fourcc, std::uint32_t quantization, std::uint32_t colorspace);
 
 /// How one frame lies in memory, as the driver decided it.
 struct V4l2Layout {

@@ -63,7 +63,7 @@ V4l2Layout LayoutOf(const v4l2_pix_format& pix) {
     layout.width_px = static_cast<int>(pix.width);
     layout.height_px = static_cast<int>(pix.height);
     layout.planes[0] = {static_cast<int>(pix.bytesperline), pix.sizeimage};
-    layout.range = RangeOf(pix.quantization, pix.colorspace);
+    layout.range = RangeOf(pix.pixelformat, pix.quantization, pix.colorspace);
     layout.interlaced = IsInterlaced(pix.field);
     return layout;
 }
@@ -78,7 +78,7 @@ V4l2Layout LayoutOf(const v4l2_pix_format_mplane& pix) {
         layout.planes[i] = {static_cast<int>(pix.plane_fmt[i].bytesperline),
                             pix.plane_fmt[i].sizeimage};
     }
-    layout.range = RangeOf(pix.quantization, pix.colorspace);
+    layout.range = RangeOf(pix.pixelformat, pix.quantization, pix.colorspace);
     layout.interlaced = IsInterlaced(pix.field);
     return layout;
 }
