@@ -1,0 +1,155 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/v4l2_accounting.hpp"
+#include "drivers/v4l2_buffers.hpp"
+#include "drivers/v4l2_controls.hpp"
+#include "drivers/v4l2_device.hpp"
+#include "drivers/v4l2_jpeg_decoder.hpp"
+#include "drivers/v4l2_offers.hpp"
+#include "drivers/v4l2_settings.hpp"
+#include "hal/camera.hpp"
+
+namespace hitchview::drivers {
+
+struct V4l2CameraOptions {
+    std::string name;  ///< in the log
+    std::string path;  ///< /dev/v4l/by-path/..., a link of udev's, /dev/videoN
+    V4l2Wish wish{{1280, 720}, 30, "best"};
+    /// Frames that the program holds at a time, and three: one that the device fills, one that
+    /// waits for it, one that is about to be lent. With fewer, frames are lost while all are lent.
+    /// [2, 32].
+    int buffers = 8;
+    int input = -1;      ///< of a device with several; -1: the one selected
+    int line_bytes = 0;  ///< from line to line at least, where a GPU asks for it; 0: as it is
+    bool export_dmabuf = true;  ///< false: for a driver whose exported buffers are of no use
+    V4l2Orientation orientation;
+    std::vector<V4l2ControlWish> controls;
+    /// Periods without a frame after which the stream is restarted once, and after as many more
+    /// given up. >= 2.
+    int silence_periods = 15;
+};
+
+/// What became of the options, for a person and for the health of the system.
+struct V4l2CameraFacts {
+    V4l2Identity identity;
+    V4l2Layout layout;
+    double rate_hz = 0;
+    bool rate_is_set = false;  ///< false: the device has no such setting, its rate is its own
+    V4l2StampSource stamps = V4l2StampSource::kEndOfFrame;
+    std::optional<hal::Instant> maybe_exposure;  ///< as read when the stream started
+    bool dmabuf = false;
+    double buffer_read_gb_per_s = 0;    ///< of a mapped buffer
+    double ordinary_read_gb_per_s = 0;  ///< of as much of ordinary memory
+};
+
+/// Camera over the Linux video capture interface (V4L2), single- or multi-planar.
+///
+/// Frames are the driver's own buffers, lent without a copy, in what format they come (UYVY, YUYV,
+/// NV12 in one or two memory planes, GREY); Motion JPEG is decoded to I420 in the thread that
+/// calls WaitFrame. What came between Open and the first call of WaitFrame is old by then: it is
+/// dropped, and not counted. captured_at: see ExposureStart. Sequence: the device's, made to go on
+/// without a gap when a stream starts again.
+///
+/// kCorrupted: the driver has marked the frame, it is too short, cannot be decoded, or its stamp
+/// steps back. kDisconnected: the device has gone or failed, its source has changed to another
+/// format, or it kept silent and a restart did not help. From then on, until Reopen succeeds, each
+/// call answers so at once. A change of source that leaves the format as it was only costs the
+/// frames in between, and counts as reopened.
+///
+/// Reopen finds the device by the path that was opened, whatever number it has now. kUnsupported:
+/// another driver or model is there, on a path /dev/videoN also another place (a number may
+/// pass to the camera next to it), or it no longer gives the format.
+///
+/// No memory from the heap after Open. Leases must not outlive the camera. Says on stderr when a
+/// camera is lost, why, and when it is back. Thread: see hal::Camera; it alone calls into the
+/// kernel, but for the waking of it by a lease that ends.
+class V4l2Camera final : public hal::Camera {
+ public:
+    /// The error names device, what was wanted, what was got and what is offered.
+    static hal::Checked<std::unique_ptr<V4l2Camera>> Open(const V4l2CameraOptions& options,
+                                                          V4l2Kernel& kernel = SystemKernel());
+    ~V4l2Camera() override;
+
+    [[nodiscard]] const V4l2CameraFacts& facts() const { return facts_; }
+
+    /// The DMABUF that a plane of a lent frame lies in; file -1: none (exported by no means, or
+    /// decoded). The file stays the camera's; it is valid as long as the lease. Thread:
+    /// WaitFrame's.
+    [[nodiscard]] V4l2Buffers::Dmabuf FindDmabuf(const hal::Plane& plane) const {
+        return buffers_.FindDmabuf(plane.data);
+    }
+
+ private:
+    struct Granted {
+        V4l2Layout layout;
+        std::optional<double> maybe_rate_hz;
+    };
+
+    V4l2Camera(const V4l2CameraOptions& options, V4l2Kernel& kernel);
+
+    hal::Checked<hal::Done> Start();
+    hal::Checked<hal::Done> Choose();
+    hal::Checked<hal::Done> ConfigureFirst();
+    [[nodiscard]] hal::Checked<hal::Done> Check(const Granted& granted) const;
+    void Settle(const Granted& granted);
+    void NoteFacts();
+
+    V4l2Result<hal::Done> Connect();
+    V4l2Result<Granted> Configure();
+    V4l2Result<hal::Done> Stream();
+    V4l2Result<hal::Done> ReconnectAndStream();
+    [[nodiscard]] bool IsSameDevice() const;
+    [[nodiscard]] bool IsSameFormat(const Granted& granted) const;
+
+    struct Woken {
+        bool frame = false;
+        bool event = false;
+        bool error = false;
+    };
+    Woken Wait(std::chrono::milliseconds timeout);
+    /// Empty: nothing to hand out yet, wait on.
+    std::optional<hal::Result<hal::FrameLease>> Step(std::chrono::milliseconds timeout);
+    std::optional<hal::Result<hal::FrameLease>> TakeFrame();
+    V4l2Failure ReasonOfError();
+    void Drain();
+    std::optional<hal::Result<hal::FrameLease>> Lend(const V4l2Buffers::Filled& filled);
+    std::optional<hal::Result<hal::FrameLease>> Decode(const V4l2Buffers::Filled& filled,
+                                                       const hal::FrameHeader& header);
+    V4l2Result<hal::Done> Watch();
+    hal::Error Lose(const V4l2Failure& failure);
+    void Disconnect();
+    hal::Error NoteRefused(const V4l2Failure& failure);
+
+    [[nodiscard]] const hal::FrameFormat& DoFormat() const override { return format_; }
+    hal::Result<hal::FrameLease> DoWaitFrame(std::chrono::milliseconds timeout) override;
+    hal::Result<hal::Done> DoReopen() override;
+    [[nodiscard]] hal::CameraCounts DoCounts() const override { return accounting_.counts(); }
+    [[nodiscard]] hal::PoolLevel DoPool() const override;
+
+    V4l2CameraOptions options_;
+    hal::Instant period_;
+    V4l2Device device_;
+    V4l2Buffers buffers_;
+    V4l2Accounting accounting_;
+    V4l2Input input_;
+    const V4l2PixelFormat* pixel_format_ = nullptr;
+    std::vector<V4l2ControlValue> control_values_;
+    bool has_exposure_ = false;
+    V4l2CameraFacts facts_;
+    hal::FrameFormat format_;
+    std::unique_ptr<hal::FramePool> pool_;  ///< of decoded frames
+    std::unique_ptr<V4l2JpegDecoder> decoder_;
+
+    bool streaming_ = false;
+    bool drained_ = false;    ///< of what came before the first call of WaitFrame
+    bool restarted_ = false;  ///< since the last frame, for its silence
+    hal::Instant heard_at_{};
+    V4l2Failure last_refusal_;
+};
+
+}  // namespace hitchview::drivers

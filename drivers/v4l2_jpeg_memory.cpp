@@ -1,0 +1,84 @@
+#include "drivers/v4l2_jpeg_memory.hpp"
+
+#include <jerror.h>
+
+#include <cstdint>
+
+namespace hitchview::drivers {
+namespace {
+
+/// The tables of a picture; independent of its size.
+constexpr std::size_t kCapacityBytes = 64 * 1024;
+/// A cache line, and more than the vector instructions of libjpeg-turbo ask for.
+constexpr std::size_t kAlignmentBytes = 64;
+
+[[noreturn]] void Refuse(j_common_ptr decompressor) {
+    decompressor->err->msg_code = JERR_OUT_OF_MEMORY;
+    decompressor->err->error_exit(decompressor);
+    __builtin_unreachable();
+}
+
+}  // namespace
+
+void* V4l2JpegMemory::Stack::Take(std::size_t count) {
+    const auto top = reinterpret_cast<std::uintptr_t>(bytes.data()) + used;
+    const std::size_t padding = (kAlignmentBytes - top % kAlignmentBytes) % kAlignmentBytes;
+    if (count > bytes.size() - used || padding > bytes.size() - used - count) return nullptr;
+    void* const block = bytes.data() + used + padding;
+    used += padding + count;
+    return block;
+}
+
+V4l2JpegMemory::V4l2JpegMemory(jpeg_decompress_struct& decompressor)
+    : jpeg_memory_mgr{}, decompressor_(decompressor), original_(decompressor.mem) {
+    lasting_.bytes.resize(kCapacityBytes);
+    picture_.bytes.resize(kCapacityBytes);
+    max_alloc_chunk = static_cast<long>(kCapacityBytes);
+    ServeBlocks();
+    RefuseArrays();
+    decompressor_.mem = this;
+}
+
+V4l2JpegMemory::~V4l2JpegMemory() {
+    decompressor_.mem = original_;
+}
+
+V4l2JpegMemory& V4l2JpegMemory::Of(j_common_ptr decompressor) {
+    return static_cast<V4l2JpegMemory&>(*decompressor->mem);
+}
+
+void* V4l2JpegMemory::Take(j_common_ptr decompressor, int pool, std::size_t bytes) {
+    V4l2JpegMemory& self = Of(decompressor);
+    void* const block = (pool == JPOOL_PERMANENT ? self.lasting_ : self.picture_).Take(bytes);
+    if (block == nullptr) Refuse(decompressor);
+    return block;
+}
+
+void V4l2JpegMemory::ServeBlocks() {
+    alloc_small = Take;
+    alloc_large = Take;
+    free_pool = [](j_common_ptr decompressor, int pool) {
+        if (pool == JPOOL_IMAGE) Of(decompressor).picture_.used = 0;
+    };
+    realize_virt_arrays = [](j_common_ptr) {};
+}
+
+void V4l2JpegMemory::RefuseArrays() {
+    alloc_sarray = [](j_common_ptr decompressor, int, JDIMENSION, JDIMENSION) -> JSAMPARRAY {
+        Refuse(decompressor);
+    };
+    alloc_barray = [](j_common_ptr decompressor, int, JDIMENSION, JDIMENSION) -> JBLOCKARRAY {
+        Refuse(decompressor);
+    };
+    request_virt_sarray = [](j_common_ptr decompressor, int, boolean, JDIMENSION, JDIMENSION,
+                             JDIMENSION) -> jvirt_sarray_ptr { Refuse(decompressor); };
+    request_virt_barray = [](j_common_ptr decompressor, int, boolean, JDIMENSION, JDIMENSION,
+                             JDIMENSION) -> jvirt_barray_ptr { Refuse(decompressor); };
+    access_virt_sarray = [](j_common_ptr decompressor, jvirt_sarray_ptr, JDIMENSION, JDIMENSION,
+                            boolean) -> JSAMPARRAY { Refuse(decompressor); };
+    access_virt_barray = [](j_common_ptr decompressor, jvirt_barray_ptr, JDIMENSION, JDIMENSION,
+                            boolean) -> JBLOCKARRAY { Refuse(decompressor); };
+    self_destruct = [](j_common_ptr decompressor) { Refuse(decompressor); };
+}
+
+}  // namespace hitchview::drivers
