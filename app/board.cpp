@@ -10,11 +10,12 @@
 #include "drivers/simulated_can_bus.hpp"
 #include "drivers/simulated_scenario.hpp"
 #include "drivers/steady_clock.hpp"
+#include "drivers/v4l2_camera.hpp"
 
 namespace hitchview::app {
 namespace {
 
-/// Frames that a decoder may be ahead of the reader.
+/// Frames that a decoder may be ahead of the reader, or that wait for the set they are of.
 constexpr int kFramesAhead = 4;
 
 drivers::DriveProfile Profile(SimulationConfig::Profile profile) {
@@ -61,6 +62,22 @@ drivers::SimulationOptions Overridden(drivers::SimulationOptions options,
     return options;
 }
 
+/// `slots`: frames that the program may hold.
+drivers::V4l2CameraOptions V4l2Options(const CameraConfig& camera, double rate_hz, int slots) {
+    constexpr int kWithTheDevice = 3;
+    const LiveCameraConfig& live = camera.live;
+    drivers::V4l2CameraOptions options;
+    options.name = camera.name;
+    options.path = live.device;
+    options.wish = {{live.size_px.width_px, live.size_px.height_px}, rate_hz, live.format};
+    options.buffers = live.buffers > 0 ? live.buffers : slots + kWithTheDevice;
+    options.input = live.input;
+    options.orientation = {live.rotation_deg, live.horizontal_flip, live.vertical_flip};
+    for (const ControlConfig& control : live.controls)
+        options.controls.push_back({control.name, control.value});
+    return options;
+}
+
 /// Index in the simulated rig; -1 for a name it does not have on that unit.
 int SimulatedIndex(const drivers::SimulatedRig& rig, algo::Unit unit, const std::string& name) {
     for (int i = 0; i < drivers::SimulatedRig::kCameras; ++i) {
@@ -87,7 +104,7 @@ hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, int he
     }
     if (board->period_.count() == 0) board->period_ = kDefaultPeriod;
     if (const auto can = board->OpenCanBus(config); !can) return can.error();
-    board->sets_ = std::make_unique<RecordedFrameSynchronizer>(board->cameras_);
+    board->StartSets(config);
     return board;
 }
 
@@ -114,6 +131,7 @@ hal::Checked<hal::Done> Board::OpenSimulation(const RigConfig& config) {
 
 hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit unit,
                                           const CameraConfig& camera, int slots) {
+    if (camera.IsLive()) return OpenLiveCamera(config, unit, camera, slots);
     if (camera.source == CameraConfig::Source::kSimulated) {
         const int index = SimulatedIndex(*simulation_, unit, camera.name);
         if (index < 0) {
@@ -136,6 +154,28 @@ hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit un
         period_ = hal::Instant(static_cast<std::int64_t>(1e9 / (*replay)->rate_hz()));
     cameras_[unit].push_back(std::move(*replay));
     return hal::Done{};
+}
+
+hal::Checked<hal::Done> Board::OpenLiveCamera(const RigConfig& config, algo::Unit unit,
+                                              const CameraConfig& camera, int slots) {
+    if (period_.count() == 0) period_ = kDefaultPeriod;
+    auto opened = drivers::V4l2Camera::Open(
+        V4l2Options(camera, 1e9 / static_cast<double>(period_.count()), slots));
+    if (!opened) return config.file.string() + ": camera " + camera.name + ": " + opened.error();
+    live_cameras_.push_back({opened->get(), camera.name, unit, cameras_[unit].size()});
+    cameras_[unit].push_back(std::move(*opened));
+    return hal::Done{};
+}
+
+void Board::StartSets(const RigConfig& config) {
+    if (live_cameras_.empty()) {
+        sets_ = std::make_unique<RecordedFrameSynchronizer>(cameras_);
+        return;
+    }
+    auto live = std::make_unique<LiveFrameSynchronizer>(live_cameras_, *clock_, period_,
+                                                        config.set_tolerance.value_or(period_));
+    live_ = live.get();
+    sets_ = std::move(live);
 }
 
 hal::Checked<hal::Done> Board::OpenCanBus(const RigConfig& config) {

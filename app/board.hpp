@@ -48,11 +48,15 @@ class Board {
     hal::Checked<hal::Done> OpenSimulation(const RigConfig& config);
     hal::Checked<hal::Done> OpenCamera(const RigConfig& config, algo::Unit unit,
                                        const CameraConfig& camera, int slots);
+    hal::Checked<hal::Done> OpenLiveCamera(const RigConfig& config, algo::Unit unit,
+                                           const CameraConfig& camera, int slots);
+    void StartSets(const RigConfig& config);
     hal::Checked<hal::Done> OpenCanBus(const RigConfig& config);
 
     std::unique_ptr<hal::Clock> clock_;
     std::unique_ptr<drivers::SimulatedRig> simulation_;
     Cameras cameras_;
+    std::vector<LiveCamera> live_cameras_;
     std::unique_ptr<hal::CanBus> can_bus_;
     hal::Instant period_{};
     std::unique_ptr<FrameSynchronizer> sets_;  // last: it uses cameras and clock
