@@ -299,10 +299,10 @@ Error V4l2Camera::Lose(const V4l2Failure& failure) {
 }
 
 void V4l2Camera::Disconnect() {
-    // Closing would stop the stream too, but not before a buffer that is still mapped is let go.
-    if (streaming_) static_cast<void>(StopStream(device_).ok());
+    const bool stopped = streaming_ && StopStream(device_);
     streaming_ = false;
     buffers_.Drop(device_.kernel());
+    if (stopped) buffers_.Free(device_);
     device_.Close();
 }
 
