@@ -197,20 +197,23 @@ Result<FrameLease> V4l2Camera::DoWaitFrame(milliseconds timeout) {
     return Error::kTimeout;
 }
 
-std::optional<Result<FrameLease>> V4l2Camera::Step(milliseconds timeout) {
+V4l2Camera::MaybeAnswer V4l2Camera::Step(milliseconds timeout) {
     // A buffer that is refused is offered again; only a device that is gone ends the stream here.
     const auto queued = buffers_.Queue(device_);
     if (!queued && queued.error().error == Error::kDisconnected) return Lose(queued.error());
     const Woken woken = Wait(timeout);
     if (woken.error) return Lose(ReasonOfError());
-    if (woken.event && TakeSourceChange(device_)) {
-        Disconnect();
-        const auto again = ReconnectAndStream();
-        if (!again) return Lose(again.error());
-    }
+    if (woken.event && TakeSourceChange(device_)) return FollowSource();
     if (woken.frame) return TakeFrame();
     const auto watched = Watch();
     if (!watched) return Lose(watched.error());
+    return std::nullopt;
+}
+
+V4l2Camera::MaybeAnswer V4l2Camera::FollowSource() {
+    Disconnect();
+    const auto again = ReconnectAndStream();
+    if (!again) return Lose(again.error());
     return std::nullopt;
 }
 
@@ -238,7 +241,7 @@ void V4l2Camera::Drain() {
     }
 }
 
-std::optional<Result<FrameLease>> V4l2Camera::TakeFrame() {
+V4l2Camera::MaybeAnswer V4l2Camera::TakeFrame() {
     const auto filled = buffers_.Dequeue(device_);
     if (!filled && filled.error().error == Error::kTimeout) return std::nullopt;
     if (!filled) return Lose(filled.error());
@@ -247,7 +250,7 @@ std::optional<Result<FrameLease>> V4l2Camera::TakeFrame() {
     return Lend(filled.value());
 }
 
-std::optional<Result<FrameLease>> V4l2Camera::Lend(const V4l2Buffers::Filled& filled) {
+V4l2Camera::MaybeAnswer V4l2Camera::Lend(const V4l2Buffers::Filled& filled) {
     const V4l2StampSource source = StampSourceOf(filled.flags);
     const hal::Instant stamp = source == V4l2StampSource::kDequeue ? heard_at_ : filled.stamp;
     const auto maybe_planes = PlanesOf(facts_.layout, filled.payload);
@@ -261,8 +264,8 @@ std::optional<Result<FrameLease>> V4l2Camera::Lend(const V4l2Buffers::Filled& fi
     return buffers_.Lend(filled, {format_, header.value(), *maybe_planes});
 }
 
-std::optional<Result<FrameLease>> V4l2Camera::Decode(const V4l2Buffers::Filled& filled,
-                                                     const hal::FrameHeader& header) {
+V4l2Camera::MaybeAnswer V4l2Camera::Decode(const V4l2Buffers::Filled& filled,
+                                           const hal::FrameHeader& header) {
     const auto maybe_slot = pool_->Take();
     if (!maybe_slot) {
         accounting_.NoteLost();

@@ -111,15 +111,17 @@ class V4l2Camera final : public hal::Camera {
         bool event = false;
         bool error = false;
     };
+    /// An answer of WaitFrame's; empty: there is none yet, wait on.
+    using MaybeAnswer = std::optional<hal::Result<hal::FrameLease>>;
+
     Woken Wait(std::chrono::milliseconds timeout);
-    /// Empty: nothing to hand out yet, wait on.
-    std::optional<hal::Result<hal::FrameLease>> Step(std::chrono::milliseconds timeout);
-    std::optional<hal::Result<hal::FrameLease>> TakeFrame();
+    MaybeAnswer Step(std::chrono::milliseconds timeout);
+    MaybeAnswer TakeFrame();
+    MaybeAnswer FollowSource();
     V4l2Failure ReasonOfError();
     void Drain();
-    std::optional<hal::Result<hal::FrameLease>> Lend(const V4l2Buffers::Filled& filled);
-    std::optional<hal::Result<hal::FrameLease>> Decode(const V4l2Buffers::Filled& filled,
-                                                       const hal::FrameHeader& header);
+    MaybeAnswer Lend(const V4l2Buffers::Filled& filled);
+    MaybeAnswer Decode(const V4l2Buffers::Filled& filled, const hal::FrameHeader& header);
     V4l2Result<hal::Done> Watch();
     hal::Error Lose(const V4l2Failure& failure);
     void Disconnect();

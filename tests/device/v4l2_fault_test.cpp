@@ -124,7 +124,7 @@ TEST_F(V4l2FaultTest, SequenceNumbersMayWrap) {
     // The number jumps to 128 before the wrap once the stream starts anew.
     ASSERT_TRUE(Vivid::Set(0, "inject_fatal_streaming_error", 1));
     ExpectRecovery(1);
-    EXPECT_TRUE(faulty().AwaitFrames(150));
+    EXPECT_TRUE(faulty().AwaitFrames(75) && faulty().AwaitFrames(75));
     EXPECT_LT(camera().counts().lost - lost, 100U);
 }
 

@@ -15,7 +15,7 @@ class V4l2AccountingTest : public testing::Test {
     /// Frame `sequence` with its stamp in milliseconds; the sequence given out, -1 if corrupted.
     std::int64_t Accept(std::uint32_t sequence, int stamp_ms, bool damaged = false) {
         const auto header = accounting_.Accept(sequence, milliseconds(stamp_ms), damaged);
-        return header ? header.value().sequence : -1;
+        return header ? static_cast<std::int64_t>(header.value().sequence) : -1;
     }
 
     V4l2Accounting accounting_{kPeriod};
