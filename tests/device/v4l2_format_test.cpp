@@ -195,7 +195,7 @@ TEST_F(V4l2SettingsTest, TheBestOfferedFormatIsNv12) {
     auto camera = V4l2Camera::Open(VividCamera(0));
     ASSERT_TRUE(camera.ok()) << camera.error();
     EXPECT_EQ((*camera)->format().pixel_format, hal::PixelFormat::kNv12);
-    EXPECT_EQ((*camera)->facts().rate_hz, 30);
+    EXPECT_EQ((*camera)->facts().granted.rate_hz, 30);
 }
 
 TEST_F(V4l2SettingsTest, TheRangeOfTheColoursIsTheDevices) {

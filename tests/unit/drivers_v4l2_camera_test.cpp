@@ -204,7 +204,7 @@ TEST_F(V4l2CameraTest, WhatTheDriverChangedIsToldInWords) {
 
 TEST_F(V4l2CameraTest, ADeviceWithoutARateSettingIsTakenAtItsWord) {
     kernel_.has_rate = false;
-    EXPECT_FALSE(Open().facts().rate_is_set);
+    EXPECT_FALSE(Open().facts().granted.rate_is_set);
     EXPECT_EQ(kernel_.refused[VIDIOC_S_PARM], 0);
 }
 
