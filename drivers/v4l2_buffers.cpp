@@ -82,6 +82,7 @@ V4l2Result<hal::Done> V4l2Buffers::Request(const V4l2Device& device) {
     if (const auto asked = device.Call(VIDIOC_REQBUFS, "VIDIOC_REQBUFS", request); !asked) {
         return asked.error();
     }
+    lets_go_ = (request.capabilities & V4L2_BUF_CAP_SUPPORTS_ORPHANED_BUFS) != 0;
     // More than asked is a driver's right; those are simply never queued.
     if (request.count >= static_cast<std::uint32_t>(count_)) return hal::Done{};
     return V4l2Failure{hal::Error::kTooLarge, "VIDIOC_REQBUFS gives fewer buffers than asked", 0};
@@ -145,6 +146,14 @@ void V4l2Buffers::Drop(V4l2Kernel& kernel) {
         if (slot.state == State::kLent) slot.state = State::kOrphaned;
     }
     lent_ = 0;
+}
+
+void V4l2Buffers::Free(const V4l2Device& device) {
+    if (!lets_go_) return;
+    v4l2_requestbuffers none{};
+    none.type = device.buffer_type();
+    none.memory = V4L2_MEMORY_MMAP;
+    static_cast<void>(device.Call(VIDIOC_REQBUFS, "VIDIOC_REQBUFS", none).ok());
 }
 
 void V4l2Buffers::Unmap(V4l2Kernel& kernel, Slot& slot) {

@@ -35,6 +35,10 @@ class V4l2Buffers final : public hal::FrameOwner {
                                bool export_dmabuf);
     /// Ends the stream's buffers, before the device is closed. Those lent are kept as they are.
     void Drop(V4l2Kernel& kernel);
+    /// After Drop, of a device that still answers: the driver lets go of them too, where it can
+    /// while some are lent. Closing alone would not do while a program that has just been started
+    /// still shares the file.
+    void Free(const V4l2Device& device);
 
     /// Gives the driver every buffer that is neither lent nor queued. One that it refuses is
     /// offered again by the next call; the failure is that of the last one refused.
@@ -111,6 +115,7 @@ class V4l2Buffers final : public hal::FrameOwner {
     int memory_planes_ = 1;
     bool export_wanted_ = true;
     bool exported_ = false;
+    bool lets_go_ = false;  ///< V4L2_BUF_CAP_SUPPORTS_ORPHANED_BUFS
     std::uint32_t stamp_flags_ = 0;
     std::array<Slot, kSlots> slots_{};
     std::uint64_t lent_ = 0;  ///< slots of this stream that are lent

@@ -33,10 +33,6 @@ void Log(const V4l2CameraOptions& options, const char* what, const V4l2Failure& 
                  what, failure.call, Words(failure));
 }
 
-std::string SizeText(int width_px, int height_px) {
-    return std::to_string(width_px) + "x" + std::to_string(height_px);
-}
-
 bool IsCompressed(const V4l2PixelFormat& format) {
     return format.line_bytes_per_pixel == 0;
 }
@@ -50,7 +46,8 @@ hal::Instant PeriodOf(double rate_hz) {
 V4l2Camera::V4l2Camera(const V4l2CameraOptions& options, V4l2Kernel& kernel)
     : options_(options),
       period_(PeriodOf(options.wish.rate_hz)),
-      device_(kernel),
+      negotiation_(options, kernel),
+      device_(negotiation_.device()),
       buffers_(options.buffers),
       accounting_(period_) {}
 
@@ -60,14 +57,8 @@ V4l2Camera::~V4l2Camera() {
 
 Checked<std::unique_ptr<V4l2Camera>> V4l2Camera::Open(const V4l2CameraOptions& options,
                                                       V4l2Kernel& kernel) {
-    const V4l2Wish& wish = options.wish;
-    HV_EXPECT(wish.rate_hz > 0 && options.silence_periods >= 2);
+    HV_EXPECT(options.wish.rate_hz > 0 && options.silence_periods >= 2);
     HV_EXPECT(options.orientation.rotation_deg == 0 || options.orientation.rotation_deg == 180);
-    if (wish.size.width_px <= 0 || wish.size.height_px <= 0 || wish.size.width_px % 2 != 0 ||
-        wish.size.height_px % 2 != 0) {
-        return options.path + ": size is " + SizeText(wish.size.width_px, wish.size.height_px) +
-               ", must be even";
-    }
     std::unique_ptr<V4l2Camera> camera(new V4l2Camera(options, kernel));
     if (const auto started = camera->Start(); !started) {
         return options.path + ": " + started.error();
@@ -76,105 +67,35 @@ Checked<std::unique_ptr<V4l2Camera>> V4l2Camera::Open(const V4l2CameraOptions& o
 }
 
 Checked<Done> V4l2Camera::Start() {
-    if (const auto connected = Connect(); !connected) return ToString(connected.error());
-    facts_.identity = device_.identity();
-    if (const auto chosen = Choose(); !chosen) return chosen.error();
-    if (const auto configured = ConfigureFirst(); !configured) return configured.error();
+    const auto granted = negotiation_.Agree();
+    if (!granted) return granted.error();
+    Settle(granted.value());
     if (const auto streams = Stream(); !streams) return ToString(streams.error());
     NoteFacts();
     return Done{};
 }
 
-Checked<Done> V4l2Camera::Choose() {
-    const auto chosen = ChooseFormat(ListOffers(device_, options_.wish.size), options_.wish);
-    if (!chosen) return chosen.error();
-    pixel_format_ = chosen.value();
-    const auto menus = options_.controls.empty() ? V4l2Menus::kLeftOut : V4l2Menus::kListed;
-    const std::vector<V4l2Control> controls = ListControls(device_, menus);
-    auto mirrors = PlanOrientation(controls, options_.orientation);
-    if (!mirrors) return mirrors.error();
-    const auto values = PlanControls(controls, options_.controls);
-    if (!values) return values.error();
-    control_values_ = std::move(mirrors.value());
-    control_values_.insert(control_values_.end(), values.value().begin(), values.value().end());
-    has_exposure_ = HasExposure(controls);
-    return Done{};
-}
-
-Checked<Done> V4l2Camera::ConfigureFirst() {
-    const auto granted = Configure();
-    if (!granted) return ToString(granted.error());
-    if (const auto checked = Check(granted.value()); !checked) return checked.error();
-    Settle(granted.value());
-    return Done{};
-}
-
-Checked<Done> V4l2Camera::Check(const Granted& granted) const {
+void V4l2Camera::Settle(const V4l2Granted& granted) {
+    facts_.granted = granted;
     const V4l2Layout& layout = granted.layout;
-    const V4l2Wish& wish = options_.wish;
-    const double rate_hz = granted.maybe_rate_hz.value_or(wish.rate_hz);
-    const bool same = layout.fourcc == pixel_format_->fourcc &&
-                      layout.width_px == wish.size.width_px &&
-                      layout.height_px == wish.size.height_px && !layout.interlaced &&
-                      layout.memory_planes == pixel_format_->memory_planes;
-    if (same && SameRate(rate_hz, wish.rate_hz)) return Done{};
-    return "wanted " + FourccText(pixel_format_->fourcc) + " " +
-           SizeText(wish.size.width_px, wish.size.height_px) + " at " + RateText(wish.rate_hz) +
-           " Hz, got " + FourccText(layout.fourcc) + " " +
-           SizeText(layout.width_px, layout.height_px) + (layout.interlaced ? " interlaced" : "") +
-           " at " + RateText(rate_hz) +
-           " Hz; offered: " + OffersText(ListOffers(device_, wish.size));
-}
-
-void V4l2Camera::Settle(const Granted& granted) {
-    facts_.layout = granted.layout;
-    facts_.rate_is_set = granted.maybe_rate_hz.has_value();
-    facts_.rate_hz = granted.maybe_rate_hz.value_or(options_.wish.rate_hz);
-    const bool compressed = IsCompressed(*pixel_format_);
-    format_ = {granted.layout.width_px, granted.layout.height_px, pixel_format_->delivered,
-               compressed ? hal::Range::kFull : granted.layout.range};
+    const bool compressed = IsCompressed(negotiation_.pixel_format());
+    format_ = {layout.width_px, layout.height_px, negotiation_.pixel_format().delivered,
+               compressed ? hal::Range::kFull : layout.range};
     if (!compressed) return;
     pool_ = std::make_unique<hal::FramePool>(format_, options_.buffers);
     decoder_ = std::make_unique<V4l2JpegDecoder>(format_);
 }
 
 void V4l2Camera::NoteFacts() {
+    facts_.identity = negotiation_.identity();
     facts_.stamps = StampSourceOf(buffers_.stamp_flags());
     facts_.dmabuf = buffers_.exported();
     facts_.buffer_read_gb_per_s = ReadBandwidth(buffers_.first_mapping());
     facts_.ordinary_read_gb_per_s = OrdinaryReadBandwidth(buffers_.first_mapping().size());
 }
 
-V4l2Result<Done> V4l2Camera::Connect() {
-    if (const auto opened = device_.Open(options_.path.c_str()); !opened) return opened.error();
-    const auto input = SelectInput(device_, options_.input);
-    if (!input) return input.error();
-    input_ = input.value();
-    if (input_.has_timings) {
-        if (const auto followed = FollowTimings(device_); !followed) return followed.error();
-    }
-    if (!input_.may_change) return Done{};
-    const auto subscribed = SubscribeSourceChange(device_);
-    input_.may_change = subscribed.ok();  // not every driver tells
-    return Done{};
-}
-
-V4l2Result<V4l2Camera::Granted> V4l2Camera::Configure() {
-    const V4l2Size& size = options_.wish.size;
-    const auto layout = SetFormat(
-        device_, {pixel_format_->fourcc, size.width_px, size.height_px, options_.line_bytes});
-    if (!layout) return layout.error();
-    const auto rate_hz = SetRate(device_, options_.wish.rate_hz);
-    if (!rate_hz) return rate_hz.error();
-    for (const V4l2ControlValue& value : control_values_) {
-        if (const auto set = SetControl(device_, value); !set) return set.error();
-    }
-    if (has_exposure_) facts_.maybe_exposure = ReadExposure(device_);
-    return Granted{layout.value(), rate_hz.value()};
-}
-
 V4l2Result<Done> V4l2Camera::Stream() {
-    const auto taken = buffers_.Take(device_, facts_.layout, options_.export_dmabuf);
+    const auto taken = buffers_.Take(device_, facts_.granted.layout, options_.export_dmabuf);
     if (!taken) return taken.error();
     if (const auto queued = buffers_.Queue(device_); !queued) return queued.error();
     if (const auto started = StartStream(device_); !started) return started.error();
@@ -197,25 +118,29 @@ Result<FrameLease> V4l2Camera::DoWaitFrame(milliseconds timeout) {
     return Error::kTimeout;
 }
 
-std::optional<Result<FrameLease>> V4l2Camera::Step(milliseconds timeout) {
+V4l2Camera::MaybeAnswer V4l2Camera::Step(milliseconds timeout) {
     // A buffer that is refused is offered again; only a device that is gone ends the stream here.
     const auto queued = buffers_.Queue(device_);
     if (!queued && queued.error().error == Error::kDisconnected) return Lose(queued.error());
     const Woken woken = Wait(timeout);
     if (woken.error) return Lose(ReasonOfError());
-    if (woken.event && TakeSourceChange(device_)) {
-        Disconnect();
-        const auto again = ReconnectAndStream();
-        if (!again) return Lose(again.error());
-    }
+    if (woken.event && TakeSourceChange(device_)) return FollowSource();
     if (woken.frame) return TakeFrame();
     const auto watched = Watch();
     if (!watched) return Lose(watched.error());
     return std::nullopt;
 }
 
+V4l2Camera::MaybeAnswer V4l2Camera::FollowSource() {
+    Disconnect();
+    const auto again = AgreeAgainAndStream();
+    if (!again) return Lose(again.error());
+    return std::nullopt;
+}
+
 V4l2Camera::Woken V4l2Camera::Wait(milliseconds timeout) {
-    const auto events = static_cast<short>(input_.may_change ? POLLIN | POLLPRI : POLLIN);
+    const auto events =
+        static_cast<short>(negotiation_.source_may_change() ? POLLIN | POLLPRI : POLLIN);
     std::array files{pollfd{device_.file(), events, 0},
                      pollfd{buffers_.returned_event(), POLLIN, 0}};
     const milliseconds patience =
@@ -238,7 +163,7 @@ void V4l2Camera::Drain() {
     }
 }
 
-std::optional<Result<FrameLease>> V4l2Camera::TakeFrame() {
+V4l2Camera::MaybeAnswer V4l2Camera::TakeFrame() {
     const auto filled = buffers_.Dequeue(device_);
     if (!filled && filled.error().error == Error::kTimeout) return std::nullopt;
     if (!filled) return Lose(filled.error());
@@ -247,22 +172,22 @@ std::optional<Result<FrameLease>> V4l2Camera::TakeFrame() {
     return Lend(filled.value());
 }
 
-std::optional<Result<FrameLease>> V4l2Camera::Lend(const V4l2Buffers::Filled& filled) {
+V4l2Camera::MaybeAnswer V4l2Camera::Lend(const V4l2Buffers::Filled& filled) {
     const V4l2StampSource source = StampSourceOf(filled.flags);
     const hal::Instant stamp = source == V4l2StampSource::kDequeue ? heard_at_ : filled.stamp;
-    const auto maybe_planes = PlanesOf(facts_.layout, filled.payload);
+    const auto maybe_planes = PlanesOf(facts_.granted.layout, filled.payload);
     const bool damaged =
         (filled.flags & V4L2_BUF_FLAG_ERROR) != 0 || (decoder_ == nullptr && !maybe_planes);
     auto header = accounting_.Accept(filled.sequence, stamp, damaged);
     if (!header) return header.error();
-    header->captured_at = ExposureStart(stamp, source, facts_.maybe_exposure, period_);
+    header->captured_at = ExposureStart(stamp, source, facts_.granted.maybe_exposure, period_);
     if (decoder_ != nullptr) return Decode(filled, header.value());
     accounting_.NoteDelivered();
     return buffers_.Lend(filled, {format_, header.value(), *maybe_planes});
 }
 
-std::optional<Result<FrameLease>> V4l2Camera::Decode(const V4l2Buffers::Filled& filled,
-                                                     const hal::FrameHeader& header) {
+V4l2Camera::MaybeAnswer V4l2Camera::Decode(const V4l2Buffers::Filled& filled,
+                                           const hal::FrameHeader& header) {
     const auto maybe_slot = pool_->Take();
     if (!maybe_slot) {
         accounting_.NoteLost();
@@ -299,53 +224,28 @@ Error V4l2Camera::Lose(const V4l2Failure& failure) {
 }
 
 void V4l2Camera::Disconnect() {
-    // Closing would stop the stream too, but not before a buffer that is still mapped is let go.
-    if (streaming_) static_cast<void>(StopStream(device_).ok());
+    const bool stopped = streaming_ && StopStream(device_);
     streaming_ = false;
     buffers_.Drop(device_.kernel());
+    if (stopped) buffers_.Free(device_);
     device_.Close();
 }
 
 Result<Done> V4l2Camera::DoReopen() {
     if (streaming_) return Done{};
-    const auto back = ReconnectAndStream();
+    const auto back = AgreeAgainAndStream();
     if (!back) return NoteRefused(back.error());
     std::fprintf(stderr, "camera %s (%s): back\n", options_.name.c_str(), options_.path.c_str());
     return Done{};
 }
 
-V4l2Result<Done> V4l2Camera::ReconnectAndStream() {
-    const auto streams = [this]() -> V4l2Result<Done> {
-        if (const auto connected = Connect(); !connected) return connected.error();
-        if (!IsSameDevice()) return V4l2Failure{Error::kUnsupported, "another device is there", 0};
-        const auto granted = Configure();
-        if (!granted) return granted.error();
-        if (!IsSameFormat(granted.value())) {
-            return V4l2Failure{Error::kUnsupported, "it gives another format", 0};
-        }
-        facts_.layout = granted.value().layout;
-        return Stream();
-    }();
-    if (!streams) {
-        Disconnect();
-        return streams;
-    }
-    accounting_.NoteReopened();
-    return Done{};
-}
-
-bool V4l2Camera::IsSameDevice() const {
-    V4l2Identity there = device_.identity();
-    const bool numbered = options_.path.starts_with("/dev/video");
-    if (!numbered) there.bus = facts_.identity.bus;
-    return there == facts_.identity;
-}
-
-bool V4l2Camera::IsSameFormat(const Granted& granted) const {
-    V4l2Layout there = granted.layout;
-    there.planes = facts_.layout.planes;  // frames carry the length of their lines
-    const double rate_hz = granted.maybe_rate_hz.value_or(facts_.rate_hz);
-    return there == facts_.layout && SameRate(rate_hz, facts_.rate_hz);
+V4l2Result<Done> V4l2Camera::AgreeAgainAndStream() {
+    const auto granted = negotiation_.AgreeAgain();
+    if (granted) facts_.granted = granted.value();
+    const auto streams = granted ? Stream() : V4l2Result<Done>(granted.error());
+    if (streams) accounting_.NoteReopened();
+    if (!streams) Disconnect();
+    return streams;
 }
 
 Error V4l2Camera::NoteRefused(const V4l2Failure& failure) {

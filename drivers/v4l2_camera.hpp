@@ -2,46 +2,20 @@
 
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "drivers/v4l2_accounting.hpp"
 #include "drivers/v4l2_buffers.hpp"
-#include "drivers/v4l2_controls.hpp"
-#include "drivers/v4l2_device.hpp"
 #include "drivers/v4l2_jpeg_decoder.hpp"
-#include "drivers/v4l2_offers.hpp"
-#include "drivers/v4l2_settings.hpp"
+#include "drivers/v4l2_negotiation.hpp"
 #include "hal/camera.hpp"
 
 namespace hitchview::drivers {
 
-struct V4l2CameraOptions {
-    std::string name;  ///< in the log
-    std::string path;  ///< /dev/v4l/by-path/..., a link of udev's, /dev/videoN
-    V4l2Wish wish{{1280, 720}, 30, "best"};
-    /// Frames that the program holds at a time, and three: one that the device fills, one that
-    /// waits for it, one that is about to be lent. With fewer, frames are lost while all are lent.
-    /// [2, 32].
-    int buffers = 8;
-    int input = -1;      ///< of a device with several; -1: the one selected
-    int line_bytes = 0;  ///< from line to line at least, where a GPU asks for it; 0: as it is
-    bool export_dmabuf = true;  ///< false: for a driver whose exported buffers are of no use
-    V4l2Orientation orientation;
-    std::vector<V4l2ControlWish> controls;
-    /// Periods without a frame after which the stream is restarted once, and after as many more
-    /// given up. >= 2.
-    int silence_periods = 15;
-};
-
 /// What became of the options, for a person and for the health of the system.
 struct V4l2CameraFacts {
     V4l2Identity identity;
-    V4l2Layout layout;
-    double rate_hz = 0;
-    bool rate_is_set = false;  ///< false: the device has no such setting, its rate is its own
+    V4l2Granted granted;  ///< when the stream started last
     V4l2StampSource stamps = V4l2StampSource::kEndOfFrame;
-    std::optional<hal::Instant> maybe_exposure;  ///< as read when the stream started
     bool dmabuf = false;
     double buffer_read_gb_per_s = 0;    ///< of a mapped buffer
     double ordinary_read_gb_per_s = 0;  ///< of as much of ordinary memory
@@ -85,41 +59,31 @@ class V4l2Camera final : public hal::Camera {
     }
 
  private:
-    struct Granted {
-        V4l2Layout layout;
-        std::optional<double> maybe_rate_hz;
-    };
-
     V4l2Camera(const V4l2CameraOptions& options, V4l2Kernel& kernel);
 
     hal::Checked<hal::Done> Start();
-    hal::Checked<hal::Done> Choose();
-    hal::Checked<hal::Done> ConfigureFirst();
-    [[nodiscard]] hal::Checked<hal::Done> Check(const Granted& granted) const;
-    void Settle(const Granted& granted);
+    void Settle(const V4l2Granted& granted);
     void NoteFacts();
 
-    V4l2Result<hal::Done> Connect();
-    V4l2Result<Granted> Configure();
     V4l2Result<hal::Done> Stream();
-    V4l2Result<hal::Done> ReconnectAndStream();
-    [[nodiscard]] bool IsSameDevice() const;
-    [[nodiscard]] bool IsSameFormat(const Granted& granted) const;
+    V4l2Result<hal::Done> AgreeAgainAndStream();
 
     struct Woken {
         bool frame = false;
         bool event = false;
         bool error = false;
     };
+    /// An answer of WaitFrame's; empty: there is none yet, wait on.
+    using MaybeAnswer = std::optional<hal::Result<hal::FrameLease>>;
+
     Woken Wait(std::chrono::milliseconds timeout);
-    /// Empty: nothing to hand out yet, wait on.
-    std::optional<hal::Result<hal::FrameLease>> Step(std::chrono::milliseconds timeout);
-    std::optional<hal::Result<hal::FrameLease>> TakeFrame();
+    MaybeAnswer Step(std::chrono::milliseconds timeout);
+    MaybeAnswer TakeFrame();
+    MaybeAnswer FollowSource();
     V4l2Failure ReasonOfError();
     void Drain();
-    std::optional<hal::Result<hal::FrameLease>> Lend(const V4l2Buffers::Filled& filled);
-    std::optional<hal::Result<hal::FrameLease>> Decode(const V4l2Buffers::Filled& filled,
-                                                       const hal::FrameHeader& header);
+    MaybeAnswer Lend(const V4l2Buffers::Filled& filled);
+    MaybeAnswer Decode(const V4l2Buffers::Filled& filled, const hal::FrameHeader& header);
     V4l2Result<hal::Done> Watch();
     hal::Error Lose(const V4l2Failure& failure);
     void Disconnect();
@@ -133,13 +97,10 @@ class V4l2Camera final : public hal::Camera {
 
     V4l2CameraOptions options_;
     hal::Instant period_;
-    V4l2Device device_;
+    V4l2Negotiation negotiation_;
+    V4l2Device& device_;
     V4l2Buffers buffers_;
     V4l2Accounting accounting_;
-    V4l2Input input_;
-    const V4l2PixelFormat* pixel_format_ = nullptr;
-    std::vector<V4l2ControlValue> control_values_;
-    bool has_exposure_ = false;
     V4l2CameraFacts facts_;
     hal::FrameFormat format_;
     std::unique_ptr<hal::FramePool> pool_;  ///< of decoded frames

@@ -118,13 +118,23 @@ TEST_F(V4l2FaultTest, DroppedFramesAreCountedAsLost) {
     EXPECT_NEAR(more_lost / (more_lost + more_delivered), 0.5, 0.25);
 }
 
+TEST_F(V4l2FaultTest, ADeviceThatFallsSilentIsGivenUpAndHadAgain) {
+    ASSERT_TRUE(Vivid::Set(0, "percentage_of_dropped_buffers", 100));
+    EXPECT_TRUE(CameraFollower::Await([&] { return camera().counts().reopened > 0; }));
+    EXPECT_GT(faulty().answers(Error::kDisconnected), 0);
+    const auto end = CameraFollower::Clock::now() + kLongestRecovery;
+    ASSERT_TRUE(Vivid::Set(0, "percentage_of_dropped_buffers", 0));
+    EXPECT_TRUE(faulty().AwaitFrames(3));
+    EXPECT_LT(CameraFollower::Clock::now(), end);
+}
+
 TEST_F(V4l2FaultTest, SequenceNumbersMayWrap) {
     const std::uint64_t lost = camera().counts().lost;
     ASSERT_TRUE(Vivid::Set(0, "wrap_sequence_number", 1));
     // The number jumps to 128 before the wrap once the stream starts anew.
     ASSERT_TRUE(Vivid::Set(0, "inject_fatal_streaming_error", 1));
     ExpectRecovery(1);
-    EXPECT_TRUE(faulty().AwaitFrames(150));
+    EXPECT_TRUE(faulty().AwaitFrames(75) && faulty().AwaitFrames(75));
     EXPECT_LT(camera().counts().lost - lost, 100U);
 }
 

@@ -195,7 +195,7 @@ TEST_F(V4l2SettingsTest, TheBestOfferedFormatIsNv12) {
     auto camera = V4l2Camera::Open(VividCamera(0));
     ASSERT_TRUE(camera.ok()) << camera.error();
     EXPECT_EQ((*camera)->format().pixel_format, hal::PixelFormat::kNv12);
-    EXPECT_EQ((*camera)->facts().rate_hz, 30);
+    EXPECT_EQ((*camera)->facts().granted.rate_hz, 30);
 }
 
 TEST_F(V4l2SettingsTest, TheRangeOfTheColoursIsTheDevices) {
@@ -250,7 +250,7 @@ TEST_F(V4l2SettingsTest, ErrorsNameWhatIsWrongAndWhatIsAllowed) {
     EXPECT_NE(error.find("UYVY 320x180 at "), std::string::npos) << error;
 }
 
-TEST_F(V4l2SettingsTest, AStampOfTheStartOfExposureIsTakenAsItIs) {
+TEST_F(V4l2SettingsTest, SourceAndClockOfTheStampsAreTheDevices) {
     for (const int start_of_exposure : {0, 1}) {
         ASSERT_TRUE(Vivid::Set(0, "timestamp_source", start_of_exposure));
         auto camera = V4l2Camera::Open(VividCamera(0));
@@ -262,7 +262,7 @@ TEST_F(V4l2SettingsTest, AStampOfTheStartOfExposureIsTakenAsItIs) {
         ASSERT_TRUE(frame.ok());
         const hal::Instant age = std::chrono::steady_clock::now().time_since_epoch() -
                                  frame.value().view().header.captured_at;
-        EXPECT_GT(age, start_of_exposure == 1 ? milliseconds(0) : milliseconds(33));
+        EXPECT_GT(age, milliseconds(0));
         EXPECT_LT(age, milliseconds(500));
     }
 }

@@ -1,0 +1,98 @@
+#include "drivers/v4l2_probe.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+namespace hitchview::drivers {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<int> NumberOf(const fs::path& node) {
+    constexpr std::string_view kPrefix = "video";
+    const std::string name = node.filename().string();
+    if (!name.starts_with(kPrefix)) return std::nullopt;
+    const char* const end = name.data() + name.size();
+    int number = 0;
+    const auto [stop, error] = std::from_chars(name.data() + kPrefix.size(), end, number);
+    if (error != std::errc{} || stop != end) return std::nullopt;
+    return number;
+}
+
+std::vector<int> Numbers() {
+    std::vector<int> numbers;
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator("/dev", ignored)) {
+        if (const auto maybe_number = NumberOf(entry.path())) numbers.push_back(*maybe_number);
+    }
+    std::ranges::sort(numbers);
+    return numbers;
+}
+
+std::vector<std::string> LinksTo(const std::string& path, const std::vector<std::string>& folders) {
+    std::vector<std::string> links;
+    std::error_code ignored;
+    for (const std::string& folder : folders) {
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+            if (fs::canonical(entry.path(), ignored) == path) links.push_back(entry.path());
+        }
+    }
+    std::ranges::sort(links);
+    return links;
+}
+
+/// One buffer, asked for and given back: only a buffer tells of the stamps.
+void AskForStamps(const V4l2Device& device, V4l2DeviceReport& report) {
+    v4l2_requestbuffers request{};
+    request.count = 1;
+    request.type = device.buffer_type();
+    request.memory = V4L2_MEMORY_MMAP;
+    if (!device.Call(VIDIOC_REQBUFS, "VIDIOC_REQBUFS", request)) return;
+    std::array<v4l2_plane, VIDEO_MAX_PLANES> planes{};
+    v4l2_buffer buffer{};
+    buffer.type = request.type;
+    buffer.memory = V4L2_MEMORY_MMAP;
+    if (device.multi_planar()) {
+        buffer.m.planes = planes.data();
+        buffer.length = VIDEO_MAX_PLANES;
+    }
+    report.stamps_known = device.Call(VIDIOC_QUERYBUF, "VIDIOC_QUERYBUF", buffer).ok();
+    if (report.stamps_known) report.stamps = StampSourceOf(buffer.flags);
+    request.count = 0;
+    static_cast<void>(device.Call(VIDIOC_REQBUFS, "VIDIOC_REQBUFS", request).ok());
+}
+
+void Describe(const V4l2Device& device, V4l2DeviceReport& report) {
+    const V4l2Identity& identity = device.identity();
+    report.driver = FieldText(identity.driver);
+    report.card = FieldText(identity.card);
+    report.bus = FieldText(identity.bus);
+    report.multi_planar = device.multi_planar();
+    report.offers = ListOffers(device, {1280, 720});
+    report.controls = ListControls(device, V4l2Menus::kListed);
+    AskForStamps(device, report);
+}
+
+}  // namespace
+
+std::vector<V4l2DeviceReport> ProbeV4l2Devices(const std::vector<std::string>& link_folders,
+                                               V4l2Kernel& kernel) {
+    std::vector<V4l2DeviceReport> reports;
+    for (const int number : Numbers()) {
+        V4l2DeviceReport report;
+        report.path = "/dev/video" + std::to_string(number);
+        V4l2Device device(kernel);
+        const auto opened = device.Open(report.path.c_str());
+        if (!opened && opened.error().error == hal::Error::kUnsupported) continue;
+        report.links = LinksTo(report.path, link_folders);
+        if (opened) Describe(device, report);
+        if (!opened) report.refusal = ToString(opened.error());
+        reports.push_back(std::move(report));
+    }
+    return reports;
+}
+
+}  // namespace hitchview::drivers
