@@ -1,5 +1,6 @@
 #include "app/frame_inbox.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace hitchview::app {
@@ -46,6 +47,12 @@ PendingFrames FrameInbox::Visit::Pending(hal::Instant now, hal::Instant patience
             i < inbox_.cameras_ && place.connected && now - place.heard_at < patience;
     }
     return pending;
+}
+
+hal::Instant FrameInbox::Visit::heard_at() const {
+    hal::Instant newest{};
+    for (const Place& place : inbox_.places_) newest = std::max(newest, place.heard_at);
+    return newest;
 }
 
 hal::FrameLease FrameInbox::Visit::Take(std::size_t camera) {

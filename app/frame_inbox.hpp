@@ -44,6 +44,8 @@ class FrameInbox {
 
         /// A camera that has been silent for `patience` is not awaited.
         [[nodiscard]] PendingFrames Pending(hal::Instant now, hal::Instant patience) const;
+        /// When any camera gave a frame last, or was opened.
+        [[nodiscard]] hal::Instant heard_at() const;
         /// The head of a camera that has one.
         hal::FrameLease Take(std::size_t camera);
         /// Heads.

@@ -36,15 +36,11 @@ hal::Result<FrameSet> LiveFrameSynchronizer::DoWaitSet() {
         const hal::Instant now = clock_.Now();
         const SetRule::Verdict verdict = rule_.Judge(visit.Pending(now, kPatience * period_), now);
         visit.SetAside(verdict.set_aside);
-        if (verdict.taken.any()) {
-            next_empty_at_ = now + kPatience * period_;
-            return TakeSet(visit, verdict.taken);
-        }
-        if (now >= next_empty_at_) {
-            next_empty_at_ = now + period_;
-            return EmptySet(now);
-        }
-        visit.Wait(std::min(verdict.ask_again_at, next_empty_at_) - now);
+        if (verdict.taken.any()) return TakeSet(visit, verdict.taken);
+        const hal::Instant empty_at =
+            std::max(visit.heard_at() + kPatience * period_, empty_at_ + period_);
+        if (now >= empty_at) return EmptySet(now);
+        visit.Wait(std::min(verdict.ask_again_at, empty_at) - now);
     }
 }
 
@@ -70,6 +66,7 @@ FrameSet LiveFrameSynchronizer::TakeSet(FrameInbox::Visit& visit, const CameraMa
 }
 
 FrameSet LiveFrameSynchronizer::EmptySet(hal::Instant now) {
+    empty_at_ = now;
     FrameSet set;
     set.captured_from = set.captured_until = now;
     set.cameras_missing = (1U << cameras_.size()) - 1;

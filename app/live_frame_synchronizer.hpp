@@ -74,7 +74,7 @@ class LiveFrameSynchronizer final : public FrameSynchronizer {
     FrameInbox inbox_;
     SetCounts counts_;
     StageTimes spread_;
-    hal::Instant next_empty_at_;
+    hal::Instant empty_at_{};  ///< of the newest empty set
     std::uint32_t sequence_ = 0;
     hal::Instant newest_set_{};
     std::vector<std::unique_ptr<CaptureThread>> threads_;  // last: they use the inbox

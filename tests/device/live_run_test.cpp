@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "app/program.hpp"
+#include "tests/device/vivid.hpp"
+#include "tests/support/simulated_rig_files.hpp"
+
+// The program on eight virtual cameras, publishing over LCM.
+namespace hitchview::app {
+namespace {
+
+using nlohmann::json;
+using tests::Vivid;
+
+constexpr int kCameras = 8;
+constexpr int kFrames = 150;
+
+class LiveRunTest : public testing::Test {
+ protected:
+    void SetUp() override {
+        if (!tests::VividIsThere()) GTEST_SKIP() << "this kernel has no virtual cameras (vivid)";
+        vivid_ = std::make_unique<Vivid>(tests::VividOptions{.cameras = kCameras});
+        ASSERT_TRUE(vivid_->loaded());
+        tests::Shell("ip route add 224.0.0.0/4 dev lo 2>/dev/null");
+        tests::WriteSimulatedCalibration(folder_, 1280, 720);
+    }
+
+    std::string Rig() {
+        int device = 0;
+        return folder_.Write("rig.yaml",
+                             "schema: 1\ncanvas: {projection: cylinder}\n"
+                             "calibration: rig.calib.yaml\n" +
+                                 tests::SimulatedUnits([&](const std::string&) {
+                                     return "{v4l2: /dev/video" + std::to_string(device++) +
+                                            ", format: uyvy}";
+                                 }));
+    }
+    json Report(int frames) {
+        EXPECT_EQ(RunProgram(HITCHVIEW, {"run", "--rig", Rig(), "--out", folder_ / "out",
+                                         "--frames", std::to_string(frames)}),
+                  0);
+        return json::parse(tests::FileText(folder_ / "out/report.json"));
+    }
+
+    tests::TemporaryFolder folder_;
+    std::unique_ptr<Vivid> vivid_;
+};
+
+std::uint64_t Count(const json& camera, const char* key) {
+    return camera.at(key).get<std::uint64_t>();
+}
+
+TEST_F(LiveRunTest, EveryFrameOfEightCamerasIsAccountedFor) {
+    const json report = Report(kFrames);
+    const json& live = report.at("live");
+    std::printf("%s\n%s\n", live.dump().c_str(), report.at("stages").dump().c_str());
+    EXPECT_EQ(report.at("frames"), kFrames);
+    EXPECT_EQ(report.at("heap_calls_after_ready"), 0) << report.at("heap_calls_by_thread");
+    ASSERT_EQ(live.at("cameras").size(), kCameras);
+    for (const auto& [name, camera] : live.at("cameras").items()) {
+        EXPECT_EQ(Count(camera, "delivered"), Count(camera, "taken") + Count(camera, "superseded") +
+                                                  Count(camera, "set_aside") +
+                                                  Count(camera, "pending"))
+            << name;
+        EXPECT_GT(Count(camera, "taken"), kFrames * 9 / 10) << name;
+        EXPECT_EQ(Count(camera, "corrupted"), 0) << name;
+        EXPECT_NEAR(camera.at("period_ms").get<double>(), 33.3, 1) << name;
+    }
+    const json& sets = live.at("sets");
+    EXPECT_GE(Count(sets, "complete") + Count(sets, "partial") + Count(sets, "empty"), kFrames);
+    EXPECT_GT(Count(sets, "complete"), kFrames * 8 / 10);
+    EXPECT_LE(live.at("spread").at("max_ms").get<double>(), 33.4);
+}
+
+TEST_F(LiveRunTest, OneCameraGoesAndComesBackWhileTheOthersGoOn) {
+    std::thread fault([] {
+        std::this_thread::sleep_for(std::chrono::seconds(3));
+        Vivid::Set(2, "disconnect", 1);
+    });
+    const json live = Report(2 * kFrames).at("live");
+    fault.join();
+    int index = 0;
+    for (const char* name : {"front", "left_front", "right_front", "left", "left_rear", "rear",
+                             "right_rear", "right"}) {
+        const json& camera = live.at("cameras").at(name);
+        std::printf("%s %s\n", name, camera.dump().c_str());
+        EXPECT_EQ(Count(camera, "reopened"), index++ == 2 ? 1U : 0U) << name;
+    }
+    EXPECT_GT(Count(live.at("sets"), "partial"), 0U);
+    EXPECT_EQ(Count(live.at("sets"), "empty"), 0U);
+}
+
+}  // namespace
+}  // namespace hitchview::app
