@@ -8,7 +8,7 @@ namespace hitchview::drivers {
 namespace {
 
 /// The tables of a picture; independent of its size.
-constexpr std::size_t kCapacityBytes = 64 * 1024;
+constexpr std::size_t kCapacityBytes = std::size_t{64} * 1024;
 /// A cache line, and more than the vector instructions of libjpeg-turbo ask for.
 constexpr std::size_t kAlignmentBytes = 64;
 

@@ -2,6 +2,7 @@
 
 #include "tests/device/camera_follower.hpp"
 #include "tests/device/vivid.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace hitchview::drivers {
 namespace {
@@ -89,7 +90,11 @@ TEST(V4l2UnplugTest, AFrameOutlivesTheDriverAndTheCameraComesBack) {
     if (!tests::VividIsThere()) GTEST_SKIP() << "this kernel has no virtual cameras (vivid)";
     Vivid vivid({});
     ASSERT_TRUE(vivid.loaded());
-    auto opened = V4l2Camera::Open(tests::VividCamera(0));
+    const tests::TemporaryFolder links;
+    std::filesystem::create_symlink("/dev/video0", links / "rear");
+    auto options = tests::VividCamera(0);
+    options.path = links / "rear";
+    auto opened = V4l2Camera::Open(options);
     ASSERT_TRUE(opened.ok()) << opened.error();
     V4l2Camera& camera = *opened.value();
     const auto held = camera.WaitFrame(milliseconds(1000));
