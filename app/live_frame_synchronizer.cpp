@@ -12,8 +12,7 @@ LiveFrameSynchronizer::LiveFrameSynchronizer(std::vector<LiveCamera> cameras, ha
       clock_(clock),
       period_(period),
       rule_(period, tolerance),
-      inbox_(cameras_.size(), clock.Now()),
-      next_empty_at_(clock.Now() + kPatience * period) {
+      inbox_(cameras_.size(), clock.Now()) {
     HV_EXPECT(cameras_.size() <= kMaxCameras);
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
         threads_.push_back(std::make_unique<CaptureThread>(*cameras_[i].camera, cameras_[i].name, i,

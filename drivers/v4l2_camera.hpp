@@ -24,7 +24,7 @@ struct V4l2CameraFacts {
 /// Camera over the Linux video capture interface (V4L2), single- or multi-planar.
 ///
 /// Frames are the driver's own buffers, lent without a copy, in what format they come (UYVY, YUYV,
-/// NV12 in one or two memory planes, GREY); Motion JPEG is decoded to I420 in the thread that
+/// NV12 in one or two memory planes, GREY); Motion JPEG is decoded to NV12 in the thread that
 /// calls WaitFrame. What came between Open and the first call of WaitFrame is old by then: it is
 /// dropped, and not counted. captured_at: see ExposureStart. Sequence: the device's, made to go on
 /// without a gap when a stream starts again.

@@ -12,8 +12,8 @@ constexpr std::array kFormats{
     V4l2PixelFormat{V4L2_PIX_FMT_NV12M, "nm12", hal::PixelFormat::kNv12, 2, 1},
     V4l2PixelFormat{V4L2_PIX_FMT_UYVY, "uyvy", hal::PixelFormat::kUyvy, 1, 2},
     V4l2PixelFormat{V4L2_PIX_FMT_YUYV, "yuyv", hal::PixelFormat::kYuyv, 1, 2},
-    V4l2PixelFormat{V4L2_PIX_FMT_MJPEG, "mjpeg", hal::PixelFormat::kI420, 1, 0},
-    V4l2PixelFormat{V4L2_PIX_FMT_JPEG, "jpeg", hal::PixelFormat::kI420, 1, 0},
+    V4l2PixelFormat{V4L2_PIX_FMT_MJPEG, "mjpeg", hal::PixelFormat::kNv12, 1, 0},
+    V4l2PixelFormat{V4L2_PIX_FMT_JPEG, "jpeg", hal::PixelFormat::kNv12, 1, 0},
     V4l2PixelFormat{V4L2_PIX_FMT_GREY, "grey", hal::PixelFormat::kGrey, 1, 1},
 };
 

@@ -42,18 +42,14 @@ struct Steps {
     int y;
 };
 
-void CopyLine(const std::uint8_t* from, int samples, std::uint8_t* to) {
-    std::memcpy(to, from, static_cast<std::size_t>(samples));
-}
-
-/// Means of `steps.x` by `steps.y` samples, rounded.
+/// Means of `steps.x` by `steps.y` samples, rounded, into every other byte.
 void AverageLine(const JSAMPROW* lines, Steps steps, int samples, std::uint8_t* to) {
     const JSAMPROW above = lines[0];
     const JSAMPROW below = lines[steps.y - 1];
     for (int x = 0; x < samples; ++x) {
         const int left = x * steps.x;
         const int right = left + steps.x - 1;
-        to[x] = static_cast<std::uint8_t>(
+        to[2 * x] = static_cast<std::uint8_t>(
             (above[left] + above[right] + below[left] + below[right] + 2) / 4);
     }
 }
@@ -66,11 +62,11 @@ struct V4l2JpegDecoder::Library {
 
     [[noreturn]] static void Leave(j_common_ptr common);
     static void NoteWarning(j_common_ptr common, int level);
-    void DecodePicture(std::span<const std::uint8_t> jpeg, std::uint8_t* i420);
+    void DecodePicture(std::span<const std::uint8_t> jpeg, std::uint8_t* nv12);
     void Begin(std::span<const std::uint8_t> jpeg);
     void RefuseOthers();
-    void StoreLuma(int first_line, std::uint8_t* i420);
-    void StoreChroma(int component, int first_line, std::uint8_t* i420);
+    void StoreLuma(int first_line, std::uint8_t* nv12);
+    void StoreChroma(int component, int first_line, std::uint8_t* nv12);
 
     hal::FrameFormat format;
     jpeg_decompress_struct decompressor{};
@@ -107,16 +103,16 @@ void V4l2JpegDecoder::Library::NoteWarning(j_common_ptr common, int level) {
 }
 
 void V4l2JpegDecoder::Library::DecodePicture(std::span<const std::uint8_t> jpeg,
-                                             std::uint8_t* i420) {
+                                             std::uint8_t* nv12) {
     Begin(jpeg);
     std::array<JSAMPARRAY, 3> planes{components[0].lines.data(), components[1].lines.data(),
                                      components[2].lines.data()};
     const int lines = decompressor.max_v_samp_factor * kBlock;
     for (int line = 0; line < format.height_px; line += lines) {
         jpeg_read_raw_data(&decompressor, planes.data(), static_cast<JDIMENSION>(lines));
-        StoreLuma(line, i420);
-        StoreChroma(1, line, i420);
-        StoreChroma(2, line, i420);
+        StoreLuma(line, nv12);
+        StoreChroma(1, line, nv12);
+        StoreChroma(2, line, nv12);
     }
     jpeg_finish_decompress(&decompressor);
 }
@@ -147,33 +143,31 @@ void V4l2JpegDecoder::Library::RefuseOthers() {
     if (!taken) Leave(reinterpret_cast<j_common_ptr>(&decompressor));
 }
 
-void V4l2JpegDecoder::Library::StoreLuma(int first_line, std::uint8_t* i420) {
+void V4l2JpegDecoder::Library::StoreLuma(int first_line, std::uint8_t* nv12) {
     const int lines =
         std::min(decompressor.max_v_samp_factor * kBlock, format.height_px - first_line);
     for (int i = 0; i < lines; ++i) {
-        CopyLine(components[0].lines[static_cast<std::size_t>(i)], format.width_px,
-                 i420 + static_cast<std::ptrdiff_t>(first_line + i) * format.width_px);
+        std::memcpy(nv12 + static_cast<std::ptrdiff_t>(first_line + i) * format.width_px,
+                    components[0].lines[static_cast<std::size_t>(i)],
+                    static_cast<std::size_t>(format.width_px));
     }
 }
 
-void V4l2JpegDecoder::Library::StoreChroma(int component, int first_line, std::uint8_t* i420) {
+void V4l2JpegDecoder::Library::StoreChroma(int component, int first_line, std::uint8_t* nv12) {
     const int width = format.width_px / 2;
-    const int height = format.height_px / 2;
     const std::ptrdiff_t luma = static_cast<std::ptrdiff_t>(format.width_px) * format.height_px;
-    std::uint8_t* const plane =
-        i420 + luma + (component - 1) * static_cast<std::ptrdiff_t>(width) * height;
+    std::uint8_t* const plane = nv12 + luma + (component - 1);
     const Steps steps{2 / decompressor.max_h_samp_factor, 2 / decompressor.max_v_samp_factor};
     const int lines =
         std::min(decompressor.max_v_samp_factor * kBlock, format.height_px - first_line) / 2;
     Component& decoded = components[static_cast<std::size_t>(component)];
     for (int i = 0; i < lines; ++i) {
-        std::uint8_t* const to = plane + static_cast<std::ptrdiff_t>(first_line / 2 + i) * width;
+        std::uint8_t* const to =
+            plane + static_cast<std::ptrdiff_t>(first_line / 2 + i) * format.width_px;
         const JSAMPROW* const from =
             decoded.lines.data() + static_cast<std::ptrdiff_t>(i) * steps.y;
         if (decompressor.num_components == 1) {
-            std::memset(to, 128, static_cast<std::size_t>(width));
-        } else if (steps.x == 1 && steps.y == 1) {
-            CopyLine(from[0], width, to);
+            for (int x = 0; x < width; ++x) to[2 * x] = 128;
         } else {
             AverageLine(from, steps, width, to);
         }
@@ -182,14 +176,14 @@ void V4l2JpegDecoder::Library::StoreChroma(int component, int first_line, std::u
 
 V4l2JpegDecoder::V4l2JpegDecoder(const hal::FrameFormat& format)
     : library_(std::make_unique<Library>(format)) {
-    HV_EXPECT(format.pixel_format == hal::PixelFormat::kI420);
+    HV_EXPECT(format.pixel_format == hal::PixelFormat::kNv12);
 }
 
 V4l2JpegDecoder::~V4l2JpegDecoder() = default;
 
 hal::Result<hal::Done> V4l2JpegDecoder::Decode(std::span<const std::uint8_t> jpeg,
-                                               std::span<std::uint8_t> i420) {
-    HV_EXPECT(i420.size() == hal::FrameBytes(library_->format));
+                                               std::span<std::uint8_t> nv12) {
+    HV_EXPECT(nv12.size() == hal::FrameBytes(library_->format));
     if (jpeg.empty()) return hal::Error::kCorrupted;
     library_->damaged = false;
     // libjpeg leaves by longjmp where it cannot go on; nothing between here and there needs a
@@ -198,7 +192,7 @@ hal::Result<hal::Done> V4l2JpegDecoder::Decode(std::span<const std::uint8_t> jpe
         jpeg_abort_decompress(&library_->decompressor);
         return hal::Error::kCorrupted;
     }
-    library_->DecodePicture(jpeg, i420.data());
+    library_->DecodePicture(jpeg, nv12.data());
     if (library_->damaged) return hal::Error::kCorrupted;
     return hal::Done{};
 }

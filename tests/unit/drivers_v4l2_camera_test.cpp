@@ -217,7 +217,7 @@ class V4l2MotionJpegTest : public V4l2CameraTest {
 
 TEST_F(V4l2MotionJpegTest, IsDecodedInTheCallersThreadWithoutTheHeap) {
     V4l2Camera& camera = Open();
-    EXPECT_EQ(camera.format().pixel_format, hal::PixelFormat::kI420);
+    EXPECT_EQ(camera.format().pixel_format, hal::PixelFormat::kNv12);
     EXPECT_EQ(camera.format().range, hal::Range::kFull);
     Script(0, 1, jpeg_);
     const std::uint64_t before = tests::HeapCallsOfThisThread();

@@ -14,21 +14,23 @@ using tests::Bytes;
 using tests::JpegPicture;
 
 constexpr hal::FrameFormat Format(int width, int height) {
-    return {width, height, hal::PixelFormat::kI420, hal::Range::kFull};
+    return {width, height, hal::PixelFormat::kNv12, hal::Range::kFull};
 }
 
 hal::Checked<Bytes> Decoded(V4l2JpegDecoder& decoder, const hal::FrameFormat& format,
                             const Bytes& jpeg) {
-    Bytes i420(hal::FrameBytes(format));
-    if (const auto decoded = decoder.Decode(jpeg, i420); !decoded) {
+    Bytes nv12(hal::FrameBytes(format));
+    if (const auto decoded = decoder.Decode(jpeg, nv12); !decoded) {
         return std::string(ToString(decoded.error()));
     }
-    return i420;
+    return nv12;
 }
 
 /// Samples of the reference's planes, chroma averaged down to half size.
 Bytes HalfChroma(const tests::JpegPlanes& planes, int width, int height) {
-    Bytes i420 = planes.samples[0];
+    Bytes nv12 = planes.samples[0];
+    const std::size_t luma = nv12.size();
+    nv12.resize(luma * 3 / 2);
     for (std::size_t k = 1; k < 3; ++k) {
         const int plane_width = planes.width[k];
         const int across = plane_width == width ? 2 : 1;
@@ -42,11 +44,12 @@ Bytes HalfChroma(const tests::JpegPlanes& planes, int width, int height) {
                     sum +=
                         planes.samples[k][static_cast<std::size_t>(from_y * plane_width + from_x)];
                 }
-                i420.push_back(static_cast<std::uint8_t>((sum + 2) / 4));
+                nv12[luma + static_cast<std::size_t>(y * width + 2 * x) + k - 1] =
+                    static_cast<std::uint8_t>((sum + 2) / 4);
             }
         }
     }
-    return i420;
+    return nv12;
 }
 
 class V4l2JpegSamplingTest : public testing::TestWithParam<int> {};
@@ -55,9 +58,9 @@ TEST_P(V4l2JpegSamplingTest, DecodesToTheReferencesPlanesWithChromaAveraged) {
     for (const auto& [width, height] : {std::pair{64, 48}, std::pair{50, 38}}) {
         const Bytes jpeg = JpegPicture(width, height, GetParam(), 1);
         V4l2JpegDecoder decoder(Format(width, height));
-        const auto i420 = Decoded(decoder, Format(width, height), jpeg);
-        ASSERT_TRUE(i420.ok()) << i420.error();
-        EXPECT_EQ(i420.value(), HalfChroma(tests::ReferencePlanes(jpeg), width, height));
+        const auto nv12 = Decoded(decoder, Format(width, height), jpeg);
+        ASSERT_TRUE(nv12.ok()) << nv12.error();
+        EXPECT_EQ(nv12.value(), HalfChroma(tests::ReferencePlanes(jpeg), width, height));
     }
 }
 
@@ -74,18 +77,18 @@ class V4l2JpegDecoderTest : public testing::Test {
 };
 
 TEST_F(V4l2JpegDecoderTest, GreyHasNeutralChroma) {
-    const auto i420 = Decode(JpegPicture(64, 48, TJSAMP_GRAY, 1));
-    ASSERT_TRUE(i420.ok()) << i420.error();
-    EXPECT_EQ(Bytes(i420.value().begin() + 64 * 48, i420.value().end()), Bytes(64 * 24, 128));
+    const auto nv12 = Decode(JpegPicture(64, 48, TJSAMP_GRAY, 1));
+    ASSERT_TRUE(nv12.ok()) << nv12.error();
+    EXPECT_EQ(Bytes(nv12.value().begin() + 64 * 48, nv12.value().end()), Bytes(64 * 24, 128));
 }
 
 TEST_F(V4l2JpegDecoderTest, PicturesWithoutHuffmanTablesAreDecodedWithTheStandardOnes) {
     const Bytes bare = tests::WithoutHuffmanTables(good_);
     ASSERT_LT(bare.size(), good_.size());
     V4l2JpegDecoder fresh(kFormat);
-    const auto i420 = Decoded(fresh, kFormat, bare);
-    ASSERT_TRUE(i420.ok()) << i420.error();
-    EXPECT_EQ(i420.value(), Decode(good_).value());
+    const auto nv12 = Decoded(fresh, kFormat, bare);
+    ASSERT_TRUE(nv12.ok()) << nv12.error();
+    EXPECT_EQ(nv12.value(), Decode(good_).value());
 }
 
 TEST_F(V4l2JpegDecoderTest, WhatIsNotAWholePictureOfTheSizeIsCorruptedAndTheNextIsGood) {
@@ -119,11 +122,11 @@ TEST_F(V4l2JpegDecoderTest, PaddingAfterThePictureDoesNotHarm) {
 TEST_F(V4l2JpegDecoderTest, TakesNoMemoryNotEvenForDamagedPictures) {
     if (!tests::kHeapCallsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
     const Bytes cut(good_.begin(), good_.begin() + 200);
-    Bytes i420(hal::FrameBytes(kFormat));
+    Bytes nv12(hal::FrameBytes(kFormat));
     const std::uint64_t before = tests::HeapCallsOfThisThread();
     for (int i = 0; i < 20; ++i) {
-        static_cast<void>(decoder_.Decode(good_, i420).ok());
-        static_cast<void>(decoder_.Decode(cut, i420).ok());
+        static_cast<void>(decoder_.Decode(good_, nv12).ok());
+        static_cast<void>(decoder_.Decode(cut, nv12).ok());
     }
     EXPECT_EQ(tests::HeapCallsOfThisThread(), before);
 }
