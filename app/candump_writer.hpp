@@ -23,9 +23,9 @@ class CandumpLine {
     /// `interface`: 1 to 15 characters.
     explicit CandumpLine(std::string_view interface);
 
-    /// `epoch_us` >= 0: when the frame was received, microseconds since 1970; finer time is cut
-    /// off, as candump does. The text is valid until the next call.
-    std::string_view Format(const hal::CanFrame& frame, std::int64_t epoch_us);
+    /// The time is `frame.epoch` (known); nanoseconds are cut off, as candump does. The text is
+    /// valid until the next call.
+    std::string_view Format(const hal::CanFrame& frame);
 
  private:
     // Time, interface, id, flags, 64 bytes in hex.

@@ -125,6 +125,7 @@ void Complete(const RigConfig& config, Board& board, const RunOutputs& outputs,
               RunSummary& summary) {
     summary.dropped += outputs.dropped();
     summary.publishing = outputs.times();
+    summary.can = outputs.can();
     for (const algo::Unit unit : algo::kUnits) {
         for (std::size_t i = 0; i < config.units[unit].cameras.size(); ++i)
             summary.pools.push_back(
