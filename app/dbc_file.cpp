@@ -238,8 +238,15 @@ void Parser::ParseFloatType() {
     in_.SkipStatement();
 }
 
+// SG_MUL_VAL_ 1111 Yaw Page 3-3; says no more than m3 does. Other ranges and lists do.
 void Parser::ParseExtendedMultiplexing() {
-    if (DbcSignal* const signal = TakeSignalPlace()) signal->extended_multiplexing = true;
+    if (DbcSignal* const signal = TakeSignalPlace()) {
+        in_.Advance();
+        const std::string page = std::to_string(signal->multiplexed_by.value_or(-1));
+        const bool is_simple = in_.token().IsWord(page + "-" + page);
+        if (is_simple) in_.Advance();
+        signal->extended_multiplexing = !is_simple || !in_.token().IsSign(';');
+    }
     in_.SkipStatement();
 }
 

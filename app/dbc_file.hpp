@@ -35,7 +35,7 @@ struct DbcSignal {
     std::string unit;
     bool is_multiplexor = false;                 ///< M
     std::optional<std::int64_t> multiplexed_by;  ///< m<k>: only in frames whose multiplexor is k
-    bool extended_multiplexing = false;          ///< SG_MUL_VAL_ says when it is there
+    bool extended_multiplexing = false;          ///< SG_MUL_VAL_ says more than m<k>
     bool is_float = false;                       ///< SIG_VALTYPE_: IEEE 754
     std::vector<DbcValueText> texts;
 };

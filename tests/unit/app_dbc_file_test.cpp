@@ -51,7 +51,8 @@ const std::string kSmall =
     "VAL_ Environment 0 \"x\" ;\n"
     "VAL_ 1111 State -1 \"Minus\" 18446744073709551615 \"Most\" ;\n"
     "SIG_VALTYPE_ 2566879783 High : 1;\n"
-    "SG_MUL_VAL_ 2566879783 Low Page 0-1, 5-5;\n";
+    "SG_MUL_VAL_ 2566879783 Low Page 0-0, 5-5;\n"
+    "SG_MUL_VAL_ 2566879783 High Page 3-3;\n";
 
 DbcFile Parse(const std::string& text) {
     auto dbc = ParseDbc(text, "x.dbc");
@@ -108,6 +109,7 @@ TEST(DbcFileTest, MultiplexingIsTold) {
     EXPECT_EQ(message.FindSignal("Low")->multiplexed_by, 0);
     EXPECT_TRUE(message.FindSignal("Low")->extended_multiplexing);
     EXPECT_EQ(message.FindSignal("High")->multiplexed_by, 3);
+    EXPECT_FALSE(message.FindSignal("High")->extended_multiplexing) << "the same once more";
     EXPECT_TRUE(message.FindSignal("High")->is_multiplexor);
     EXPECT_TRUE(message.FindSignal("High")->is_float);
     EXPECT_FALSE(message.FindSignal("Low")->is_float);
