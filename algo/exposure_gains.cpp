@@ -7,7 +7,8 @@
 namespace hitchview::algo {
 namespace {
 
-constexpr int kStride = 2;       // corners of the map
+constexpr int kStride = 4;       // corners of the map
+constexpr int kPhases = 4;       // corners that are looked at in turn lie half of that apart
 constexpr int kPatch = 8;        // px of the camera, averaged over
 constexpr int kPatchStep = 2;    // every second one, across and down
 constexpr double kDark = 12;     // grey levels where noise rules
@@ -66,8 +67,8 @@ SeenGreys SeenAt(const ComposedMap& map, const RigFrames& frames, int row, int c
 
 void ExposureGains::Collect(const ComposedMap& map, const RigFrames& frames, Table& sum,
                             Table& count) const {
-    for (int row = 0; row <= map.block_rows(); row += kStride) {
-        for (int col = 0; col <= map.block_cols(); col += kStride) {
+    for (int row = first_row_; row <= map.block_rows(); row += kStride) {
+        for (int col = first_col_; col <= map.block_cols(); col += kStride) {
             const SeenGreys seen = SeenAt(map, frames, row, col);
             for (const SeenGrey& i : seen) {
                 for (const SeenGrey& j : seen) {
@@ -83,7 +84,10 @@ void ExposureGains::Collect(const ComposedMap& map, const RigFrames& frames, Tab
 void ExposureGains::Update(const ComposedMap& map, const RigFrames& frames) {
     Table sum = Table::Zero();
     Table count = Table::Zero();
-    Collect(map, frames, sum, count);
+    for (int looks = known_ ? 1 : kPhases; looks > 0; --looks) {
+        Collect(map, frames, sum, count);
+        MoveOn();
+    }
     const double total = count.sum();
     if (total < 16) return;
     Table normal = kPrior * Table::Identity();
@@ -103,9 +107,14 @@ void ExposureGains::Update(const ComposedMap& map, const RigFrames& frames) {
     known_ = true;
 }
 
+/// To the corners where the next pictures are looked at.
+void ExposureGains::MoveOn() {
+    first_col_ = kStride / 2 - first_col_;
+    if (first_col_ == 0) first_row_ = kStride / 2 - first_row_;
+}
+
 void ExposureGains::Reset() {
-    log_gain_.setZero();
-    known_ = false;
+    *this = ExposureGains(follow_);
 }
 
 CameraGains ExposureGains::gains() const {

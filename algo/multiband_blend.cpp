@@ -1,17 +1,20 @@
 #include "algo/multiband_blend.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <opencv2/core.hpp>
+
+#include "algo/camera_patch.hpp"
+#include "algo/multiversion.hpp"
 
 namespace hitchview::algo {
 namespace {
 
-/// Below this the rest of the picture is another camera's.
-constexpr float kWhole = 0.999F;
-/// Samples to a side of the square whose mean is level 0, and canvas px from one to the next.
-constexpr int kSamples = 4;
-constexpr int kSampleStep = 3;
+/// A camera with less than this of the coarsest blend is not looked at: less than one grey level of
+/// what the exposure of two cameras may differ by.
+constexpr float kLeastShare = 1.0F / 60;
+/// Canvas px from one of a patch's samples to the next.
+constexpr int kSampleStep_px = 3;
 
 bool Inside(const CameraFrame& frame, const ComposedMap::Corner& corner) {
     return corner.sees && frame.present() && corner.x >= 0 && corner.y >= 0 &&
@@ -28,61 +31,52 @@ int StepAt(const ComposedMap& map, int source, int row, int col) {
     const float across = beside.x - here.x;
     const float down = beside.y - here.y;
     const float moved_px = std::sqrt(across * across + down * down);
-    const float step = moved_px * kSampleStep / static_cast<float>(map.block_px());
+    const float step = moved_px * kSampleStep_px / static_cast<float>(map.block_px());
     return std::clamp(static_cast<int>(step + 0.5F), 1, 2 * map.block_px());
 }
 
-/// Sum of kN x kN values `step` apart, from the one at (x, y) on.
-template <int kN>
-int SumFrom(const SamplePlane& plane, int x, int y, int step) {
-    const std::uint8_t* row = plane.row(y) + x * plane.step_bytes;
-    const int across = step * plane.step_bytes;
-    const std::ptrdiff_t down = static_cast<std::ptrdiff_t>(step) * plane.stride_bytes;
-    int sum = 0;
-    for (int r = 0; r < kN; ++r, row += down) {
-        for (int c = 0; c < kN; ++c) sum += row[c * across];
+/// Of `count` values and those `spacing` beside them.
+HV_MULTIVERSION void BlurLine(const float* above, const float* here, const float* below,
+                              int spacing, int count, float* to) {
+    for (int i = 0; i < count; ++i) {
+        const float left = above[i - spacing] + 2 * here[i - spacing] + below[i - spacing];
+        const float middle = above[i] + 2 * here[i] + below[i];
+        const float right = above[i + spacing] + 2 * here[i + spacing] + below[i + spacing];
+        to[i] = (left + 2 * middle + right) * (1.0F / 16);
     }
-    return sum;
 }
 
-/// Mean of kN x kN values round (x, y), of the nearest ones where the square reaches outside.
-template <int kN>
-float MeanOf(const SamplePlane& plane, const Eigen::Vector2f& centre, int step) {
-    const int reach = (kN - 1) * step;
-    const float half = 0.5F * static_cast<float>(reach);
-    const int left = static_cast<int>(centre.x() - half + 0.5F);
-    const int top = static_cast<int>(centre.y() - half + 0.5F);
-    if (left >= 0 && top >= 0 && left + reach < plane.cols && top + reach < plane.rows)
-        return static_cast<float>(SumFrom<kN>(plane, left, top, step)) / (kN * kN);
-    std::array<int, kN> bytes;
-    for (int c = 0; c < kN; ++c) {
-        const int x = left + c * step;
-        bytes[static_cast<std::size_t>(c)] = plane.step_bytes * std::clamp(x, 0, plane.cols - 1);
-    }
-    int sum = 0;
-    for (int r = 0; r < kN; ++r) {
-        const int y = top + r * step;
-        const std::uint8_t* row = plane.row(std::clamp(y, 0, plane.rows - 1));
-        for (const int byte : bytes) sum += row[byte];
-    }
-    return static_cast<float>(sum) / (kN * kN);
+/// Adds `bit` where a share counts.
+HV_MULTIVERSION void MarkShares(const float* share, int count, std::uint32_t bit,
+                                std::uint32_t* marks) {
+    for (int i = 0; i < count; ++i) marks[i] |= share[i] > kLeastShare ? bit : 0;
 }
 
-/// Mean of one colour channel as it is shown; grey where the camera has no colour.
-float MeanChroma(const CameraFrame& frame, int channel, float gain,
-                 const ComposedMap::Corner& corner, int step) {
-    if (!frame.has_chroma()) return 128;
-    const Eigen::Vector2f centre(CameraFrame::ChromaX(corner.x), frame.ChromaY(corner.y));
-    const float mean = MeanOf<kSamples / 2>(frame.ChromaSamples(channel), centre, step);
-    return 128 + gain * FullChroma(frame.range, mean - 128);
+bool IsOneBit(std::uint32_t bits) {
+    return (bits & (bits - 1)) == 0;
 }
 
-MultibandBlend::Colour MeanColour(const CameraFrame& frame, float gain,
-                                  const ComposedMap::Corner& corner, int step) {
-    const float y = MeanOf<kSamples>(frame.LumaSamples(), {corner.x, corner.y}, step);
-    return {std::clamp(gain * FullLuma(frame.range, y), 0.0F, 255.0F),
-            MeanChroma(frame, 0, gain, corner, step), MeanChroma(frame, 1, gain, corner, step), 0};
-}
+/// Reads patches some time after they were asked for.
+class PatchReader {
+ public:
+    void Add(const CameraPatch& patch, float gain, MultibandBlend::Colour& to) {
+        if (waiting_.full()) ReadAll();
+        patch.Prefetch();
+        waiting_.push_back({patch, gain, &to});
+    }
+    void ReadAll() {
+        for (const Wanted& wanted : waiting_) *wanted.to = wanted.patch.Mean(wanted.gain);
+        waiting_.clear();
+    }
+
+ private:
+    struct Wanted {
+        CameraPatch patch;
+        float gain;
+        MultibandBlend::Colour* to;
+    };
+    FixedVector<Wanted, 32> waiting_;
+};
 
 }  // namespace
 
@@ -90,187 +84,162 @@ MultibandBlend::MultibandBlend(const ComposedMap& map)
     : ring_(map.is_ring()),
       sources_(std::min(map.cameras(), kSources)),
       rows_(map.block_rows() + 1),
-      cols_(map.block_cols() + (ring_ ? 0 : 1)) {
-    const auto corners = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_);
-    most_.assign(corners, -1);
-    joint_.assign(corners, Joint::kFar);
+      cols_(map.block_cols() + (ring_ ? 0 : 1)),
+      stride_(cols_ + 2 * kPad) {
+    const auto corners = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(stride_);
+    const auto sources = static_cast<std::size_t>(sources_);
     shown_.assign(corners, 0);
-    for (std::vector<Masks>& mask : mask_) mask.assign(corners, Masks::Zero());
-    const Layer empty(corners, Colour::Zero());
-    finest_.assign(static_cast<std::size_t>(sources_), empty);
-    level_ = next_level_ = finest_;
-    coarse_ = empty;
+    coarse_.assign(corners, Colour::Zero());
+    for (auto& masks : mask_) masks.assign(sources, std::vector<float>(corners, 0));
+    for (auto& layers : level_) layers.assign(sources, Layer(corners, Colour::Zero()));
 }
 
 void MultibandBlend::Update(const ComposedMap& map, const RigPictures& pictures,
                             TaskRunner& runner) {
     runner.Run(rows_, [&](int row) { ReadMasks(map, pictures.frames, row); });
-    FindJoints();
-    for (int level = 1; level <= kLevels; ++level)
-        runner.Run(rows_, [&](int row) { BlurMasks(level, row); });
-    runner.Run(rows_, [&](int row) { ReadColours(map, pictures, row); });
-    for (int level = 0; level + 1 < kLevels; ++level) {
-        runner.Run(rows_, [&](int row) { AddBand(level, row); });
-        std::swap(level_, next_level_);
-    }
+    runner.Run(sources_, [&](int source) { BlurMasks(static_cast<std::size_t>(source)); });
+    runner.Run(rows_, [&](int row) {
+        FindShown(row);
+        ReadColours(map, pictures, row);
+    });
+    for (int level = 0; level < kLevels - 1; ++level)
+        runner.Run(rows_, [&](int row) { AddBand(static_cast<std::size_t>(level), row); });
 }
 
 void MultibandBlend::ReadMasks(const ComposedMap& map, const RigFrames& frames, int row) {
     const std::size_t start = At(row, 0);
-    std::fill_n(mask_[0].begin() + static_cast<std::ptrdiff_t>(start), cols_, Masks::Zero());
+    const auto cols = static_cast<std::size_t>(cols_);
+    float* sum = mask_[kLevels][0].data() + start;  // not used otherwise until there are all masks
+    std::fill_n(sum, cols, 0.0F);
     for (int s = 0; s < sources_; ++s) {
         const CameraFrame& frame =
             frames[map.unit_of(s)][static_cast<std::size_t>(map.camera_of(s))];
+        float* mask = mask_[0][static_cast<std::size_t>(s)].data() + start;
+        std::fill_n(mask, cols, 0.0F);
         const ComposedMap::Columns& used = map.used(s, row);
         for (int col = used.first; col <= std::min(used.last, cols_ - 1); ++col) {
             const ComposedMap::Corner& corner = map.corner(s, row, col);
-            if (corner.weight > 0 && Inside(frame, corner))
-                mask_[0][At(row, col)][s] = corner.weight;
+            if (corner.weight <= 0 || !Inside(frame, corner)) continue;
+            mask[col] = corner.weight;
+            sum[col] += corner.weight;
         }
     }
+    for (std::size_t i = 0; i < cols; ++i) sum[i] = sum[i] > 0 ? 1 / sum[i] : 0;
+    for (std::vector<float>& masks : mask_[0]) {
+        float* mask = masks.data() + start;
+        for (std::size_t i = 0; i < cols; ++i) mask[i] *= sum[i];
+        Continue(mask);
+    }
+}
+
+/// The columns beside the first and the last one: of a ring those that follow, elsewhere the same.
+template <typename T>
+void MultibandBlend::Continue(T* row) const {
+    for (int i = 1; i <= kPad; ++i) {
+        row[-i] = row[ring_ ? cols_ - i : 0];
+        row[cols_ - 1 + i] = row[ring_ ? i - 1 : cols_ - 1];
+    }
+}
+
+void MultibandBlend::BlurMasks(std::size_t source) {
+    for (std::size_t level = 1; level <= kLevels; ++level) {
+        const int spacing = 1 << (level - 1);
+        const float* from = mask_[level - 1][source].data();
+        float* to = mask_[level][source].data();
+        for (int row = 0; row < rows_; ++row) {
+            const Around around = AroundRow(row, spacing);
+            BlurLine(from + around.above, from + around.here, from + around.below, spacing, cols_,
+                     to + around.here);
+            Continue(to + around.here);
+        }
+    }
+}
+
+/// Two cameras share the coarsest blend; elsewhere there is nothing to add.
+void MultibandBlend::FindShown(int row) {
+    const std::size_t start = At(row, 0);
     for (std::size_t at = start; at < start + static_cast<std::size_t>(cols_); ++at) {
-        Masks& mask = mask_[0][at];
-        const float sum = mask.sum();
-        if (sum > 0) mask /= sum;
-        int most = 0;
-        mask.maxCoeff(&most);
-        most_[at] = static_cast<std::int8_t>(sum > 0 ? most : -1);
-    }
-}
-
-void MultibandBlend::FindJoints() {
-    for (int row = 0; row < rows_; ++row) {
-        for (int col = 0; col < cols_; ++col)
-            joint_[At(row, col)] = IsJoint(row, col) ? Joint::kHere : Joint::kFar;
-        WidenJoints(At(row, 0), 1, cols_, ring_);
-    }
-    for (int col = 0; col < cols_; ++col)
-        WidenJoints(At(0, col), static_cast<std::size_t>(cols_), rows_, false);
-}
-
-bool MultibandBlend::IsJoint(int row, int col) const {
-    const std::size_t at = At(row, col);
-    if (most_[at] < 0) return false;
-    const auto differs = [&](std::size_t other) {
-        return most_[other] >= 0 && most_[other] != most_[at];
-    };
-    return mask_[0][at][most_[at]] < kWhole ||
-           ((ring_ || col + 1 < cols_) && differs(At(row, col + 1))) ||
-           (row + 1 < rows_ && differs(At(row + 1, col)));
-}
-
-/// Along a line of corners: marks what lies within reach of what was marked before.
-void MultibandBlend::WidenJoints(std::size_t first, std::size_t step, int count, bool round) {
-    const Joint mark = step == 1 ? Joint::kBeside : Joint::kAbove;
-    const auto sweep = [&](bool forward) {
-        int left = 0;
-        for (int i = 0; i < (round ? 2 : 1) * count; ++i) {
-            const int along = forward ? i % count : count - 1 - i % count;
-            Joint& joint = joint_[first + static_cast<std::size_t>(along) * step];
-            if (joint != Joint::kFar && joint != mark) {
-                left = kReach;
-            } else if (left > 0) {
-                joint = mark;
-                --left;
-            }
+        for (std::uint32_t bits = shown_[at]; bits != 0; bits &= bits - 1) {
+            const auto s = static_cast<std::size_t>(std::countr_zero(bits));
+            for (auto& layers : level_) layers[s][at].setZero();
         }
-    };
-    sweep(true);
-    sweep(false);
-}
-
-MultibandBlend::Neighbours MultibandBlend::NeighboursOf(int row, int col, int spacing) const {
-    int left = col - spacing;
-    int right = col + spacing;
-    if (ring_ && left < 0) left += cols_;
-    if (ring_ && right >= cols_) right -= cols_;
-    Neighbours neighbours;
-    for (const int down : {-1, 0, 1}) {
-        const int other_row = row + down * spacing;
-        if (other_row < 0 || other_row >= rows_) continue;
-        const float weight = down == 0 ? 2.0F : 1.0F;
-        if (left >= 0) neighbours.push_back({At(other_row, left), weight});
-        neighbours.push_back({At(other_row, col), 2 * weight});
-        if (right < cols_) neighbours.push_back({At(other_row, right), weight});
+        shown_[at] = 0;
     }
-    return neighbours;
-}
-
-void MultibandBlend::BlurMasks(int level, int row) {
-    const std::vector<Masks>& sharper = mask_[static_cast<std::size_t>(level - 1)];
-    for (int col = 0; col < cols_; ++col) {
-        const std::size_t at = At(row, col);
-        if (!NearJoint(at)) continue;
-        Masks sum = Masks::Zero();
-        float weight = 0;
-        for (const Neighbour& neighbour : NeighboursOf(row, col, 1 << (level - 1))) {
-            // Far from every joint no blur changes anything, and none was made.
-            const bool blurred = NearJoint(neighbour.at);
-            sum += neighbour.weight * (blurred ? sharper : mask_[0])[neighbour.at];
-            weight += neighbour.weight;
-        }
-        mask_[static_cast<std::size_t>(level)][at] = sum / weight;
-    }
+    for (std::size_t s = 0; s < mask_[kLevels].size(); ++s)
+        MarkShares(mask_[kLevels][s].data() + start, cols_, 1U << s, shown_.data() + start);
 }
 
 void MultibandBlend::ReadColours(const ComposedMap& map, const RigPictures& pictures, int row) {
+    PatchReader reader;
     for (int col = 0; col < cols_; ++col) {
         const std::size_t at = At(row, col);
-        shown_[at] = 0;
-        coarse_[at].setZero();
-        if (!NearJoint(at)) continue;
-        for (int s = 0; s < sources_; ++s) {
-            if (mask_[kLevels][at][s] <= 0) continue;
+        std::uint32_t& shown = shown_[at];
+        if (IsOneBit(shown)) shown = 0;
+        for (std::uint32_t bits = shown; bits != 0; bits &= bits - 1) {
+            const int s = std::countr_zero(bits);
             const Unit unit = map.unit_of(s);
             const auto camera = static_cast<std::size_t>(map.camera_of(s));
             const CameraFrame& frame = pictures.frames[unit][camera];
             const ComposedMap::Corner& corner = map.corner(s, row, col);
-            if (!Inside(frame, corner)) continue;
-            const auto source = static_cast<std::size_t>(s);
-            finest_[source][at] = level_[source][at] =
-                MeanColour(frame, pictures.gains[unit][camera], corner, StepAt(map, s, row, col));
-            shown_[at] |= 1U << s;
+            if (Inside(frame, corner)) {
+                reader.Add({&frame, corner.x, corner.y, StepAt(map, s, row, col)},
+                           pictures.gains[unit][camera],
+                           level_[0][static_cast<std::size_t>(s)][at]);
+            } else {
+                shown &= ~(1U << s);
+            }
         }
     }
+    reader.ReadAll();
+    for (Layer& layer : level_[0]) Continue(layer.data() + At(row, 0));
 }
 
-MultibandBlend::Colour MultibandBlend::Blurred(int source, const Neighbours& neighbours) const {
-    const Layer& layer = level_[static_cast<std::size_t>(source)];
-    Colour sum = Colour::Zero();
-    float weight = 0;
-    for (const Neighbour& neighbour : neighbours) {
-        if (!Shown(source, neighbour.at)) continue;
-        sum += neighbour.weight * layer[neighbour.at];
-        weight += neighbour.weight;
-    }
-    return sum / weight;
+MultibandBlend::Around MultibandBlend::AroundRow(int row, int spacing) const {
+    return {At(std::max(row - spacing, 0), 0), At(row, 0),
+            At(std::min(row + spacing, rows_ - 1), 0)};
+}
+
+/// Of what the source shows by (1 2 1) x (1 2 1), `spacing` corners apart.
+MultibandBlend::Colour MultibandBlend::Blurred(const Layer& layer, const Around& around, int col,
+                                               int spacing) {
+    const Colour* above = layer.data() + around.above + col;
+    const Colour* here = layer.data() + around.here + col;
+    const Colour* below = layer.data() + around.below + col;
+    const Colour diagonal = above[-spacing] + above[spacing] + below[-spacing] + below[spacing];
+    const Colour beside = above[0] + below[0] + here[-spacing] + here[spacing];
+    const Colour sum = diagonal + 2 * beside + 4 * here[0];
+    return sum / sum[3];  // the corners that it does not show count nothing
 }
 
 /// Level `level` less the next one; with the last of them also what is left.
-void MultibandBlend::AddBand(int level, int row) {
+void MultibandBlend::AddBand(std::size_t level, int row) {
     const bool last = level + 2 == kLevels;
+    const int spacing = 1 << level;
+    const Around around = AroundRow(row, spacing);
     for (int col = 0; col < cols_; ++col) {
         const std::size_t at = At(row, col);
-        if (shown_[at] == 0) continue;
-        const Masks& mask = mask_[static_cast<std::size_t>(level + 1)][at];
-        const Neighbours neighbours = NeighboursOf(row, col, 1 << level);
         Colour band = Colour::Zero();
         Colour rest = Colour::Zero();
         float band_weight = 0;
         float rest_weight = 0;
-        for (int s = 0; s < sources_; ++s) {
-            if (!Shown(s, at)) continue;
-            const auto source = static_cast<std::size_t>(s);
-            const Colour blurred = Blurred(s, neighbours);
-            next_level_[source][at] = blurred;
-            band += mask[s] * (level_[source][at] - blurred);
-            band_weight += mask[s];
-            rest += mask_[kLevels][at][s] * blurred;
-            rest_weight += mask_[kLevels][at][s];
+        for (std::uint32_t bits = shown_[at]; bits != 0; bits &= bits - 1) {
+            const auto s = static_cast<std::size_t>(std::countr_zero(bits));
+            const Layer& layer = level_[level][s];
+            const Colour blurred = Blurred(layer, around, col, spacing);
+            const float share = mask_[level + 1][s][at];
+            band += share * (layer[at] - blurred);
+            band_weight += share;
+            if (!last) level_[level + 1][s][at] = blurred;
+            if (!last) continue;
+            rest += mask_[kLevels][s][at] * blurred;
+            rest_weight += mask_[kLevels][s][at];
         }
+        if (level == 0) coarse_[at].setZero();
         if (band_weight > 0) coarse_[at] += band / band_weight;
-        if (last) coarse_[at] += rest / rest_weight;
+        if (last && rest_weight > 0) coarse_[at] += rest / rest_weight;
     }
+    if (last) return;
+    for (Layer& layer : level_[level + 1]) Continue(layer.data() + around.here);
 }
 
 }  // namespace hitchview::algo

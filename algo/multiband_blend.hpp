@@ -22,9 +22,8 @@ namespace hitchview::algo {
 /// is 0. Level 0 is as coarse as a block of the map; what no camera shows has no weight.
 class MultibandBlend {
  public:
-    static constexpr int kLevels = 3;                  ///< coarse bands
-    static constexpr int kReach = (1 << kLevels) - 1;  ///< corners to each side of a joint
-    using Colour = Eigen::Array4f;                     ///< luma, u, v, nothing
+    static constexpr int kLevels = 3;  ///< coarse bands
+    using Colour = Eigen::Array4f;     ///< luma, u, v, and 1 where there is a colour
 
     /// For maps of the size of `map`.
     explicit MultibandBlend(const ComposedMap& map);
@@ -36,56 +35,53 @@ class MultibandBlend {
         return (shown_[At(row, col)] | shown_[At(row, col + 1)] | shown_[At(row + 1, col)] |
                 shown_[At(row + 1, col + 1)]) != 0;
     }
-    /// Added to what a camera of the map shows at a corner, before it is weighted.
+    /// Added to what a camera of the map shows at a corner, before it is weighted: luma, u, v.
     [[nodiscard]] Colour shift(int source, int row, int col) const {
         const std::size_t at = At(row, col);
         if (!Shown(source, at)) return Colour::Zero();
-        return coarse_[at] - finest_[static_cast<std::size_t>(source)][at];
+        return coarse_[at] - level_[0][static_cast<std::size_t>(source)][at];
     }
 
  private:
     static constexpr int kSources = 2 * static_cast<int>(kMaxCameras);
-    using Masks = Eigen::Array<float, kSources, 1>;
+    /// Columns beside a row's first and last one, so that every corner has neighbours.
+    static constexpr int kPad = 1 << (kLevels - 1);
     using Layer = std::vector<Colour>;  // per corner
 
-    struct Neighbour {
-        std::size_t at;
-        float weight;
+    /// First corners of a row and of those that are blurred into it.
+    struct Around {
+        std::size_t above;
+        std::size_t here;
+        std::size_t below;
     };
-    using Neighbours = FixedVector<Neighbour, 9>;
 
     void ReadMasks(const ComposedMap& map, const RigFrames& frames, int row);
-    void FindJoints();
-    [[nodiscard]] bool IsJoint(int row, int col) const;
-    void WidenJoints(std::size_t first, std::size_t step, int count, bool round);
-    void BlurMasks(int level, int row);
+    void BlurMasks(std::size_t source);
+    void FindShown(int row);
     void ReadColours(const ComposedMap& map, const RigPictures& pictures, int row);
-    void AddBand(int level, int row);
-    [[nodiscard]] Colour Blurred(int source, const Neighbours& neighbours) const;
-    /// Those that lie on the grid, `spacing` apart, with the weights of (1 2 1) x (1 2 1).
-    [[nodiscard]] Neighbours NeighboursOf(int row, int col, int spacing) const;
-    [[nodiscard]] bool NearJoint(std::size_t at) const { return joint_[at] != Joint::kFar; }
+    void AddBand(std::size_t level, int row);
+    template <typename T>
+    void Continue(T* row) const;
+    [[nodiscard]] Around AroundRow(int row, int spacing) const;
+    [[nodiscard]] static Colour Blurred(const Layer& layer, const Around& around, int col,
+                                        int spacing);
     [[nodiscard]] bool Shown(int source, std::size_t at) const {
         return (shown_[at] >> source & 1U) != 0;
     }
     [[nodiscard]] std::size_t At(int row, int col) const {
-        return static_cast<std::size_t>(row * cols_ + (col < cols_ ? col : 0));
+        return static_cast<std::size_t>(row * stride_ + kPad + (col < cols_ ? col : 0));
     }
-
-    enum class Joint : std::uint8_t { kFar, kHere, kBeside, kAbove };
 
     bool ring_;
     int sources_;
     int rows_;
-    int cols_;                          // a ring's last column of corners is its first one
-    std::vector<std::int8_t> most_;     // source with the largest share, -1: none
-    std::vector<Joint> joint_;          // whether one is within reach
-    std::vector<std::uint32_t> shown_;  // bit s: source s has a pixel, and a share within reach
-    std::array<std::vector<Masks>, kLevels + 1> mask_;  // m, m^1, m^2 ...
-    std::vector<Layer> finest_;                         // G_0, by source
-    std::vector<Layer> level_;                          // G_b
-    std::vector<Layer> next_level_;
-    Layer coarse_;  // B
+    int cols_;    // a ring's last column of corners is its first one
+    int stride_;  // corners from one row to the next
+    /// Bit s: source s has a pixel, and a share within reach that others share.
+    std::vector<std::uint32_t> shown_;
+    std::array<std::vector<std::vector<float>>, kLevels + 1> mask_;  // m, m^1, m^2 ... by source
+    std::array<std::vector<Layer>, kLevels - 1> level_;  // G_0, G_1 ... by source; 0: not shown
+    Layer coarse_;                                       // B
 };
 
 }  // namespace hitchview::algo
