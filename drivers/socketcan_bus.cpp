@@ -184,18 +184,17 @@ hal::Result<CanFrame> SocketCanBus::DoWaitFrame(std::chrono::milliseconds timeou
 }
 
 hal::Result<CanFrame> SocketCanBus::Read() {
-    while (socket_) {
-        const int error = message_.Receive(socket_.get());
-        if (error == EAGAIN || error == EINTR) {
-            CountDroppedExactly();
-            return Error::kTimeout;
-        }
-        if (error != 0) return Fail(error);
-        if (const auto dropped = message_.dropped()) CountDropped(*dropped);
-        if (message_.IsError() && CountError()) return Error::kDisconnected;
-        if (!message_.IsError() || options_.record) return Deliver();
+    if (!socket_) return Error::kTimeout;
+    const int error = message_.Receive(socket_.get());
+    if (error == EAGAIN || error == EINTR) {
+        CountDroppedExactly();
+        return Error::kTimeout;
     }
-    return Error::kTimeout;
+    if (error != 0) return Fail(error);
+    if (const auto dropped = message_.dropped()) CountDropped(*dropped);
+    const bool is_lost = message_.IsError() && CountError();
+    if (!message_.IsError() || options_.record) return Deliver();
+    return is_lost ? Error::kDisconnected : Error::kTimeout;
 }
 
 hal::Result<CanFrame> SocketCanBus::Deliver() {
@@ -237,11 +236,15 @@ bool SocketCanBus::CountError() {
     if ((message_.error_classes() & CAN_ERR_BUSOFF) == 0) return false;
     bus_off_ = true;
     Disconnect();
-    return !options_.record;
+    return true;
 }
 
 void SocketCanBus::CountDropped(std::uint32_t dropped) {
-    dropped_ += dropped - dropped_by_socket_;  // modulo 2^32, as the kernel counts
+    // Modulo 2^32, as the kernel counts. A frame that came before the exact count was asked for
+    // may be read after it.
+    const auto more = static_cast<std::int32_t>(dropped - dropped_by_socket_);
+    if (more <= 0) return;
+    dropped_ += static_cast<std::uint64_t>(more);
     dropped_by_socket_ = dropped;
 }
 

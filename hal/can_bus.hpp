@@ -21,8 +21,7 @@ struct CanFrame {
     bool extended = false;
     CanFrameKind kind = CanFrameKind::kData;  ///< others come only from a bus opened to record
     bool fd = false;                          ///< a data frame in the FD format
-    std::uint8_t fd_flags =
-        0;  ///< FD: the kernel's four: 1 bit rate switched, 2 sender error passive
+    std::uint8_t fd_flags = 0;    ///< FD: 1 bit rate switched, 2 sender passive, 4 always or never
     std::uint8_t size_bytes = 0;  ///< 0..8 classic, 0..64 FD
     std::array<std::uint8_t, 64> data{};
     Instant received_at{};
