@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/core/hal/intrin.hpp>
 
+#include "algo/feature_motion.hpp"
+
 namespace hitchview::algo {
 namespace {
 
@@ -53,6 +55,37 @@ Agreement Agree(const DetailField::Neighbours& around, const Vector2f& mean,
     return {{SumOf(sum_x), SumOf(sum_y)}, SumOf(weight)};
 }
 
+/// Weights of samples by how near they are to a place.
+class Nearness {
+ public:
+    Nearness(const Vector2d& place_px, double reach_px)
+        : x_px_(cv::v_setall_f32(static_cast<float>(place_px.x()))),
+          y_px_(cv::v_setall_f32(static_cast<float>(place_px.y()))),
+          per_px2_(cv::v_setall_f32(static_cast<float>(1 / (reach_px * reach_px)))) {}
+
+    /// Of a block of samples.
+    [[nodiscard]] cv::v_float32x4 Weigh(const CornerSamples& samples, int place) const {
+        const cv::v_float32x4 off_x = cv::v_load(samples.x_px.data() + place) - x_px_;
+        const cv::v_float32x4 off_y = cv::v_load(samples.y_px.data() + place) - y_px_;
+        const cv::v_float32x4 nearness =
+            cv::v_setall_f32(1) - per_px2_ * (off_x * off_x + off_y * off_y);
+        const cv::v_float32x4 root = cv::v_max(nearness, cv::v_setzero_f32());
+        return cv::v_load(samples.weight.data() + place) * root * root;
+    }
+
+ private:
+    cv::v_float32x4 x_px_;
+    cv::v_float32x4 y_px_;
+    cv::v_float32x4 per_px2_;
+};
+
+CornerSamples SamplesOver(const Projection& canvas) {
+    const int spacing_px = CornerSpacing_px(canvas);
+    return {CornerField::CornersOver(canvas.height_px, spacing_px),
+            CornerField::CornersOver(canvas.width_px, spacing_px),
+            static_cast<int>(kMaxParallaxSamples)};
+}
+
 ScanlineFit ScanlinesOver(const Projection& canvas, const DetailFieldOptions& options) {
     const int spacing_px = CornerSpacing_px(canvas);
     return {CornerField::CornersOver(canvas.height_px, spacing_px),
@@ -66,6 +99,7 @@ DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& opt
       mesh_(canvas),
       spacing_px_(static_cast<float>(CornerSpacing_px(canvas))),
       options_(options),
+      samples_{{SamplesOver(canvas), SamplesOver(canvas)}},
       scanlines_{{ScanlinesOver(canvas, options), ScanlinesOver(canvas, options)}},
       wanted_(canvas, Vector2f::Zero()),
       support_(canvas, 0),
@@ -73,9 +107,7 @@ DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& opt
       smooth_(canvas, Vector2f::Zero()),
       misses_(canvas, Vector2f::Zero()),
       detail_(canvas, Vector2f::Zero()),
-      doubt_px_(canvas, static_cast<float>(options.unknown_px)) {
-    samples_.resize(static_cast<std::size_t>(detail_.rows() * detail_.cols()));
-}
+      doubt_px_(canvas, static_cast<float>(options.unknown_px)) {}
 
 DetailField::Range DetailField::HalfOf(Overlap overlap) const {
     const int half = detail_.cols() / 2;
@@ -84,10 +116,10 @@ DetailField::Range DetailField::HalfOf(Overlap overlap) const {
 }
 
 void DetailField::Clear(Overlap overlap) {
+    samples_[overlap].Clear();
     const Range half = HalfOf(overlap);
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = half.first; col <= half.last; ++col) {
-            samples_[Index(row, col)].clear();
             detail_.at(row, col).setZero();
             doubt_px_.at(row, col) = static_cast<float>(options_.unknown_px);
         }
@@ -103,27 +135,30 @@ void DetailField::Add(Overlap overlap, const CanvasPair& pair, float weight) {
     const auto row = static_cast<int>(v);
     const Range half = HalfOf(overlap);
     if (v < 0 || row >= detail_.rows() || col < half.first || col > half.last) return;
-    const Vector2d corner = detail_.Pixel(row, col);
-    samples_[Index(row, col)].push_back(
-        {(Vector2d(x, met.y()) - corner).cast<float>(), e.cast<float>(), weight});
+    samples_[overlap].Add(row, col, {Vector2d(x, met.y()).cast<float>(), e.cast<float>(), weight});
 }
 
 void DetailField::Fit(Overlap overlap, const VertexField& discrepancy) {
+    CornerSamples& samples = samples_[overlap];
+    samples.Sort();
     const Range range = FindRange(overlap);
     if (range.last <= range.first) return;
     // What is near lies farther forward in the trailer's view: to the right, in the left overlap.
     const float sign = overlap == Overlap::kLeft ? 1.0F : -1.0F;
     ScanlineFit& scanlines = scanlines_[overlap];
     scanlines.Start(range.last - range.first + 1);
-    Vote(range, sign, scanlines);
+    Vote(samples, range, sign, scanlines);
     scanlines.Solve();
+    Neighbours around;
     for (int row = 0; row < detail_.rows(); ++row) {
-        for (int col = range.first; col <= range.last; ++col)
-            Settle(row, col, range, sign * scanlines.At(row, col - range.first));
+        for (int col = range.first; col <= range.last; ++col) {
+            Gather(samples, row, col, range, around);
+            Settle(around, row, col, sign * scanlines.At(row, col - range.first));
+        }
     }
     Subtract(discrepancy, range);
     Smooth(range);
-    Doubt(range);
+    Doubt(samples, range);
 }
 
 /// The columns that have samples.
@@ -132,7 +167,8 @@ DetailField::Range DetailField::FindRange(Overlap overlap) const {
     Range range{detail_.cols(), -1};
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = half.first; col <= half.last; ++col) {
-            if (samples_[Index(row, col)].empty()) continue;
+            const CornerSamples::Run run = samples_[overlap].Of(row, col, col);
+            if (run.first == run.end) continue;
             range.first = std::min(range.first, col);
             range.last = std::max(range.last, col);
         }
@@ -141,58 +177,56 @@ DetailField::Range DetailField::FindRange(Overlap overlap) const {
 }
 
 /// Each sample for the four corners round it.
-void DetailField::Vote(const Range& range, float sign, ScanlineFit& fit) const {
+void DetailField::Vote(const CornerSamples& samples, const Range& range, float sign,
+                       ScanlineFit& fit) const {
     const auto vote = [&](int row, int col, const ScanlineFit::Ballot& ballot, float weight) {
         if (row < 0 || row >= detail_.rows() || col < range.first || col > range.last) return;
         fit.Vote(row, col - range.first, ballot, weight);
     };
     for (int row = 0; row < detail_.rows(); ++row) {
-        for (int col = range.first; col <= range.last; ++col) {
-            for (const Sample& s : samples_[Index(row, col)]) {
-                if (s.weight < kLeastVote) continue;
-                const ScanlineFit::Ballot ballot = fit.BallotFor(sign * s.e_px.x());
-                const Vector2f share = s.off_px.cwiseAbs() / spacing_px_;
-                const int down = s.off_px.y() > 0 ? 1 : -1;
-                const int across = s.off_px.x() > 0 ? 1 : -1;
-                const float beside = s.weight * share.x();
-                const float here = s.weight - beside;
-                vote(row, col, ballot, here * (1 - share.y()));
-                vote(row, col + across, ballot, beside * (1 - share.y()));
-                vote(row + down, col, ballot, here * share.y());
-                vote(row + down, col + across, ballot, beside * share.y());
-            }
+        const auto [first, end] = samples.Of(row, range.first, range.last);
+        for (int place = first; place < end; ++place) {
+            const CornerSamples::Sample s = samples.At(place);
+            if (s.weight < kLeastVote) continue;
+            const ScanlineFit::Ballot ballot = fit.BallotFor(sign * s.e_px.x());
+            const Vector2f at = (s.at_px.array() + 0.5F) / spacing_px_;
+            const auto left = static_cast<int>(at.x());
+            const int above = static_cast<int>(at.y() + 1) - 1;
+            const float right_part = s.weight * (at.x() - static_cast<float>(left));
+            const float left_part = s.weight - right_part;
+            const float down = at.y() - static_cast<float>(above);
+            vote(above, left, ballot, left_part * (1 - down));
+            vote(above, left + 1, ballot, right_part * (1 - down));
+            vote(above + 1, left, ballot, left_part * down);
+            vote(above + 1, left + 1, ballot, right_part * down);
         }
     }
 }
 
 /// Leaves out what is too far from the corner to count.
-void DetailField::Gather(int row, int col, const Range& range, Neighbours& around) const {
-    const auto reach_px2 = static_cast<float>(options_.reach_px * options_.reach_px);
+void DetailField::Gather(const CornerSamples& samples, int row, int col, const Range& range,
+                         Neighbours& around) const {
+    const Nearness nearness(detail_.Pixel(row, col), options_.reach_px);
+    constexpr int kBlock = CornerSamples::kBlock;
     around.count = 0;
     for (int r = std::max(0, row - 1); r <= std::min(detail_.rows() - 1, row + 1); ++r) {
-        for (int c = std::max(range.first, col - 1); c <= std::min(range.last, col + 1); ++c) {
-            const Vector2f from{spacing_px_ * static_cast<float>(c - col),
-                                spacing_px_ * static_cast<float>(r - row)};
-            for (const Sample& s : samples_[Index(r, c)]) {
-                const float nearness = 1 - (s.off_px + from).squaredNorm() / reach_px2;
-                if (nearness <= 0) continue;
-                const auto i = static_cast<std::size_t>(around.count++);
-                around.x_px[i] = s.e_px.x();
-                around.y_px[i] = s.e_px.y();
-                around.weight[i] = s.weight * nearness * nearness;
-            }
+        const auto [first, end] =
+            samples.Of(r, std::max(range.first, col - 1), std::min(range.last, col + 1));
+        const int count = std::min(end - first, Neighbours::kMost - around.count);
+        for (int i = 0; i < count; i += kBlock) {
+            const int to = around.count + i;
+            cv::v_store(around.x_px.data() + to, cv::v_load(samples.e_x_px.data() + first + i));
+            cv::v_store(around.y_px.data() + to, cv::v_load(samples.e_y_px.data() + first + i));
+            cv::v_store(around.weight.data() + to, nearness.Weigh(samples, first + i));
         }
+        around.count += count;
     }
-    for (std::size_t i = 0; i < Neighbours::kBlock; ++i) {
-        const std::size_t beyond = static_cast<std::size_t>(around.count) + i;
-        around.x_px[beyond] = around.y_px[beyond] = around.weight[beyond] = 0;
-    }
+    for (float* list : {around.x_px.data(), around.y_px.data(), around.weight.data()})
+        cv::v_store(list + around.count, cv::v_setzero_f32());
 }
 
 /// Robust mean of the samples that agree with the value in x that the scanlines found.
-void DetailField::Settle(int row, int col, const Range& range, float start_px) {
-    Neighbours around;
-    Gather(row, col, range, around);
+void DetailField::Settle(const Neighbours& around, int row, int col, float start_px) {
     Vector2f mean{start_px, 0};
     float support = 0;
     for (int round = 0; round < kRounds; ++round) {
@@ -246,10 +280,10 @@ void DetailField::Sweep(const Range& range) {
     }
 }
 
-void DetailField::Doubt(const Range& range) {
+void DetailField::Doubt(const CornerSamples& samples, const Range& range) {
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col)
-            misses_.at(row, col) = MissesAt(row, col);
+            misses_.at(row, col) = MissesAt(samples, row, col);
     }
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
@@ -265,11 +299,13 @@ void DetailField::Doubt(const Range& range) {
 }
 
 /// How far the samples nearest to a corner are off, weighted, and their weights.
-Vector2f DetailField::MissesAt(int row, int col) const {
+Vector2f DetailField::MissesAt(const CornerSamples& samples, int row, int col) const {
     constexpr float kLeastWeight = 0.2F;  // what is hard to match is in doubt, too
     const Vector2f e = detail_.at(row, col) + smooth_.at(row, col);
     Vector2f misses = Vector2f::Zero();
-    for (const Sample& s : samples_[Index(row, col)]) {
+    const auto [first, end] = samples.Of(row, col, col);
+    for (int place = first; place < end; ++place) {
+        const CornerSamples::Sample s = samples.At(place);
         const float weight = std::max(kLeastWeight, s.weight);
         const float miss_px = (s.e_px - e).norm();
         misses +=

@@ -2,10 +2,9 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <vector>
 
 #include "algo/corner_grid.hpp"
-#include "algo/fixed_vector.hpp"
+#include "algo/corner_samples.hpp"
 #include "algo/mesh.hpp"
 #include "algo/scanline_fit.hpp"
 #include "algo/stitching_motion_field.hpp"
@@ -46,11 +45,11 @@ class DetailField {
     /// How far the samples round a corner are off the result on average, px; unknown_px without.
     [[nodiscard]] const CornerScalars& doubt_px() const { return doubt_px_; }
 
-    static constexpr std::size_t kMaxSamples = 12;  ///< of a corner
     /// Samples of a corner and of the eight round it, and a block of nothing.
     struct Neighbours {
-        static constexpr std::size_t kBlock = 4;  ///< handled at once
-        using List = std::array<float, 9 * kMaxSamples + kBlock>;
+        static constexpr int kMost = 108;
+        static constexpr std::size_t kBlock = CornerSamples::kBlock;  ///< handled at once
+        using List = std::array<float, kMost + 2 * kBlock>;
         List x_px;  ///< discrepancy
         List y_px;
         List weight;  ///< less where far from the corner
@@ -58,12 +57,6 @@ class DetailField {
     };
 
  private:
-    struct Sample {
-        Eigen::Vector2f off_px;  ///< from the corner
-        Eigen::Vector2f e_px;    ///< discrepancy
-        float weight;
-    };
-    using Samples = FixedVector<Sample, kMaxSamples>;
     /// Columns of corners, both ends included.
     struct Range {
         int first = 0;
@@ -72,23 +65,20 @@ class DetailField {
 
     [[nodiscard]] Range HalfOf(Overlap overlap) const;
     [[nodiscard]] Range FindRange(Overlap overlap) const;
-    void Vote(const Range& range, float sign, ScanlineFit& fit) const;
-    void Settle(int row, int col, const Range& range, float start_px);
+    void Vote(const CornerSamples& samples, const Range& range, float sign, ScanlineFit& fit) const;
+    void Settle(const Neighbours& around, int row, int col, float start_px);
     void Subtract(const VertexField& discrepancy, const Range& range);
     void Smooth(const Range& range);
     void Sweep(const Range& range);
-    void Doubt(const Range& range);
-    [[nodiscard]] Eigen::Vector2f MissesAt(int row, int col) const;
-    void Gather(int row, int col, const Range& range, Neighbours& around) const;
-    [[nodiscard]] std::size_t Index(int row, int col) const {
-        return static_cast<std::size_t>(row * detail_.cols() + col);
-    }
-
+    void Doubt(const CornerSamples& samples, const Range& range);
+    [[nodiscard]] Eigen::Vector2f MissesAt(const CornerSamples& samples, int row, int col) const;
+    void Gather(const CornerSamples& samples, int row, int col, const Range& range,
+                Neighbours& around) const;
     Projection canvas_;
     Mesh mesh_;
     float spacing_px_;  // of the corners
     DetailFieldOptions options_;
-    std::vector<Samples> samples_;  // of each corner: those nearer to it than to others
+    PerOverlap<CornerSamples> samples_;
     PerOverlap<ScanlineFit> scanlines_;
     CornerField wanted_;              // the discrepancy, then its rest, then its share
     CornerScalars support_;           // weight of the samples that agree with it

@@ -97,6 +97,8 @@ OverlapParallax::OverlapParallax(const PerUnit<UnitGeometry>& geometry,
       bias_(static_cast<std::size_t>(options.labels)),
       places_(bias_.size()),
       max_cols_(NodesOver(end_px_ - first_px_, kPitch_px)),
+      reach_(NodesOver(views[Unit::kTractor]->height_px(), kRowPitch_px), max_cols_,
+             options.labels),
       matching_(NodesOver(views[Unit::kTractor]->height_px(), kRowPitch_px), max_cols_,
                 options.labels, options.matching),
       matches_(static_cast<std::size_t>(matching_.rows() * max_cols_)) {
@@ -129,6 +131,7 @@ void OverlapParallax::LookOut() {
 void OverlapParallax::Match(const PerUnit<MatchView>& views, const Matrix3d& R_tractor_trailer) {
     LayCurves(R_tractor_trailer);
     if (!ChooseColumns()) return;
+    reach_.Start();
     Compare(views);
     matching_.Solve();
     TakeAnswers(views);
@@ -139,13 +142,24 @@ void OverlapParallax::LayCurves(const Matrix3d& R_tractor_trailer) {
         curves_[i] = sights_[i].known ? CurveOf(sights_[i], R_tractor_trailer) : Curve{};
 }
 
+/// Of the camera that the trailer's view shows there. Above and below the view: of the one at its
+/// border.
+std::optional<SightLine> OverlapParallax::OtherSight(const Vector3d& ray) const {
+    const SemiSurroundView& view = *views_[Unit::kTrailer];
+    Vector2f at = view.ToAnalysis(geometry_[Unit::kTrailer].view().Pixel(ray));
+    at.y() = std::clamp(at.y(), 0.0F, static_cast<float>(view.height_px() - 1));
+    const auto camera = view.CameraAt(at);
+    if (!camera) return std::nullopt;
+    return geometry_[Unit::kTrailer].SightOf(*camera, ray);
+}
+
 /// A point at distance 1 / w on the tractor's line of sight lies, seen from the trailer's camera,
 /// in the direction line + w (one camera - other camera), in the trailer's frame. This also means
 /// something for w <= 0: behind what is infinitely far.
 OverlapParallax::Curve OverlapParallax::CurveOf(const Sight& sight,
                                                 const Matrix3d& R_tractor_trailer) const {
     const UnitGeometry& trailer = geometry_[Unit::kTrailer];
-    const auto other = trailer.SightAlong(R_tractor_trailer.transpose() * sight.ray);
+    const auto other = OtherSight(R_tractor_trailer.transpose() * sight.ray);
     if (!other) return {};
     const Vector3d direction = R_tractor_trailer.transpose() * sight.line.direction;
     const Vector3d apart_m = R_tractor_trailer.transpose() * sight.line.origin_m - other->origin_m;
@@ -236,8 +250,10 @@ void OverlapParallax::CompareNode(int row, int col) {
     const int x = NodeX(col);
     const int y = NodeY(row);
     const Curve curve = CurveAt(x, y);
+    const int tried = reach_.At(row, ColumnOf(col));
+    matching_.tried(row, col) = static_cast<std::uint8_t>(tried);
     if (!curve.known || !HasSignature(x, y)) {
-        std::fill(cost, cost + options_.labels, kUnseen);
+        std::fill(cost, cost + tried, kUnseen);
         return;
     }
     const Census& there = census_[Unit::kTrailer];
@@ -245,10 +261,9 @@ void OverlapParallax::CompareNode(int row, int col) {
     const int height_px = views_[Unit::kTrailer]->height_px();
     PlaceLabels(curve,
                 {width_px, static_cast<float>(width_px - 1), static_cast<float>(height_px - 1)},
-                options_.labels, places_.data());
-    CountDifferences(there.data(), places_.data(), census_[Unit::kTractor].At(x, y),
-                     options_.labels, cost);
-    RateLabels(bias_.data(), options_.labels, cost);
+                tried, places_.data());
+    CountDifferences(there.data(), places_.data(), census_[Unit::kTractor].At(x, y), tried, cost);
+    RateLabels(bias_.data(), tried, cost);
 }
 
 void OverlapParallax::TakeAnswers(const PerUnit<MatchView>& views) {
@@ -258,12 +273,16 @@ void OverlapParallax::TakeAnswers(const PerUnit<MatchView>& views) {
 }
 
 std::optional<ParallaxMatch> OverlapParallax::MatchOf(const PerUnit<MatchView>& views, int row,
-                                                      int col) const {
+                                                      int col) {
     const int x = NodeX(col);
     const int y = NodeY(row);
     const Curve curve = CurveAt(x, y);
-    if (!curve.known || !HasSignature(x, y)) return std::nullopt;
+    if (!curve.known || !HasSignature(x, y)) {
+        reach_.Note(row, ColumnOf(col), 0);  // takes what its neighbours take
+        return std::nullopt;
+    }
     const SemiGlobalMatching::Answer answer = matching_.AnswerAt(row, col);
+    reach_.Note(row, ColumnOf(col), answer.label);
     Vector2f there = curve.At(static_cast<float>(answer.label) + answer.fraction);
     if (!Allows(*views[Unit::kTrailer].mask, there)) return std::nullopt;
     const float told = RefineMatch(views[Unit::kTractor].pyramid->level(0), x, y,

@@ -9,6 +9,7 @@
 
 #include "algo/census.hpp"
 #include "algo/feature_matcher.hpp"
+#include "algo/label_reach.hpp"
 #include "algo/semi_global_matching.hpp"
 #include "algo/semi_surround_view.hpp"
 #include "algo/unit.hpp"
@@ -60,6 +61,8 @@ class OverlapParallax {
 
     /// `R_tractor_trailer` takes rays of the trailer's view to the tractor's.
     void Match(const PerUnit<MatchView>& views, const Eigen::Matrix3d& R_tractor_trailer);
+    /// Forgets what was found.
+    void Reset() { reach_.Reset(); }
 
     [[nodiscard]] int rows() const { return matching_.rows(); }
     [[nodiscard]] int cols() const { return matching_.cols(); }  ///< 0: nothing overlaps
@@ -79,6 +82,7 @@ class OverlapParallax {
 
     void LookOut();
     void LayCurves(const Eigen::Matrix3d& R_tractor_trailer);
+    [[nodiscard]] std::optional<SightLine> OtherSight(const Eigen::Vector3d& ray) const;
     [[nodiscard]] Curve CurveOf(const Sight& sight, const Eigen::Matrix3d& R_tractor_trailer) const;
     [[nodiscard]] Curve CurveAt(int x, int y) const;
     bool ChooseColumns();
@@ -90,11 +94,13 @@ class OverlapParallax {
     }
     void TakeAnswers(const PerUnit<MatchView>& views);
     [[nodiscard]] std::optional<ParallaxMatch> MatchOf(const PerUnit<MatchView>& views, int row,
-                                                       int col) const;
+                                                       int col);
     [[nodiscard]] double Span_per_m() const {
         return options_.beyond_per_m + 1 / options_.nearest_m;
     }
     [[nodiscard]] int NodeX(int col) const { return left_px_ + kPitch_px * col; }
+    /// Of the column in a grid over the whole half of the view.
+    [[nodiscard]] int ColumnOf(int col) const { return col + (left_px_ - first_px_) / kPitch_px; }
     static int NodeY(int row) { return kRowPitch_px * row; }
     [[nodiscard]] std::size_t Index(int row, int col) const {
         return static_cast<std::size_t>(row * max_cols_ + col);
@@ -113,6 +119,7 @@ class OverlapParallax {
     std::vector<SemiGlobalMatching::Cost> bias_;  // of each label, towards the alignment surface
     std::vector<int> places_;  // of the labels of one node in the trailer's census
     int max_cols_;
+    LabelReach reach_;
     int left_px_ = 0;  // of the first column of nodes
     SemiGlobalMatching matching_;
     std::vector<std::optional<ParallaxMatch>> matches_;

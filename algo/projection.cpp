@@ -24,11 +24,6 @@ Matrix3d PlaneAbout(const Vector2d& centre, const Vector2d& shift, double turn) 
 
 }  // namespace
 
-double WrapColumn(double x, double width) {
-    if (x >= -0.5 && x < width - 0.5) return x;  // as most are
-    return x - width * std::floor((x + 0.5) / width);
-}
-
 Projection Projection::Plane(int width_px, int height_px) {
     return {.kind = Kind::kPlane, .width_px = width_px, .height_px = height_px};
 }
@@ -64,13 +59,6 @@ Vector2d Projection::Pixel(const Vector3d& ray) const {
     const double across = std::max(1e-9, std::hypot(ray.x(), ray.y()));
     return {WrapColumn(Centre().x() - focal_px * azimuth, width_px),
             horizon_y_px - focal_px * ray.z() / across};
-}
-
-Vector2d Projection::Difference(const Vector2d& a, const Vector2d& b) const {
-    Vector2d d = a - b;
-    if (IsRing() && std::abs(d.x()) > 0.5 * width_px)
-        d.x() -= width_px * std::round(d.x() / width_px);
-    return d;
 }
 
 PoseOffset ToOffset(const Projection& projection, const Matrix3d& pose) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace hitchview::algo {
 
@@ -43,8 +44,19 @@ struct Projection {
                                              const Eigen::Vector2d& b) const;
 };
 
+inline Eigen::Vector2d Projection::Difference(const Eigen::Vector2d& a,
+                                              const Eigen::Vector2d& b) const {
+    Eigen::Vector2d d = a - b;
+    if (IsRing() && std::abs(d.x()) > 0.5 * width_px)
+        d.x() -= width_px * std::round(d.x() / width_px);
+    return d;
+}
+
 /// x modulo `width`, in [-0.5, width - 0.5).
-double WrapColumn(double x, double width);
+inline double WrapColumn(double x, double width) {
+    if (x >= -0.5 && x < width - 0.5) return x;  // as most are
+    return x - width * std::floor((x + 0.5) / width);
+}
 
 /// A pose of a picture as three numbers that smoothing can work on.
 ///   kPlane     shift of the picture's centre (x, y) in px, turn clockwise on the screen in rad

@@ -83,6 +83,7 @@ void RigMotionEstimator::Reset() {
     }
     if (articulation_) articulation_->Reset();
     for (const Overlap overlap : kOverlaps) {
+        if (parallax_[overlap]) parallax_[overlap]->Reset();
         frames_unmatched_[overlap] = kCoastFrames;
         seams_[overlap] = SeamState::kNoOverlap;
         matches_[overlap] = 0;

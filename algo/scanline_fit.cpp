@@ -50,13 +50,14 @@ void Spread(const Changes& change, Price* __restrict wish) {
     }
 }
 
-/// Tells a node the wish of those before it, and adds its own.
+/// Tells a node the wish of those before it, and adds its own; `kept`: the bits of what it heard
+/// before that count.
 HV_MULTIVERSION
-void HandOn(const Price* __restrict cost, Price most, Price* __restrict wish,
+void HandOn(const Price* __restrict cost, Price most, Price kept, Price* __restrict wish,
             Price* __restrict heard) {
     Price least = kNever;
     for (int k = 0; k < kValues; ++k) {
-        heard[k] = static_cast<Price>(heard[k] + wish[k]);
+        heard[k] = static_cast<Price>((heard[k] & kept) + wish[k]);
         wish[k] = static_cast<Price>(wish[k] + cost[k]);
         least = std::min(least, wish[k]);
     }
@@ -114,7 +115,6 @@ void ScanlineFit::Start(int cols) {
         const auto first = static_cast<std::ptrdiff_t>(Index(row, 0));
         const auto last = static_cast<std::ptrdiff_t>(Index(row, cols));
         std::fill(cost_.begin() + first, cost_.begin() + last, Price{0});
-        std::fill(heard_.begin() + first, heard_.begin() + last, Price{0});
     }
 }
 
@@ -151,13 +151,14 @@ void ScanlineFit::Solve() {
 /// Hands on, from row to row, what the rows before want; it fades with each change.
 void ScanlineFit::Listen(int down) {
     const Changes change{PriceOf(options_.change_cost_down), PriceOf(options_.most_cost_down)};
+    const Price kept = down > 0 ? Price{0} : Price{-1};  // those above are heard first
     std::fill(wish_.begin(), wish_.end(), Price{0});
     for (int i = 0; i < rows_; ++i) {
         const int row = down > 0 ? i : rows_ - 1 - i;
         for (int col = 0; col < cols_; ++col) {
             const std::size_t at = Index(row, col);
             Price* wish = wish_.data() + Index(0, col);
-            HandOn(cost_.data() + at, change.most, wish, heard_.data() + at);
+            HandOn(cost_.data() + at, change.most, kept, wish, heard_.data() + at);
             Spread(change, wish);
         }
     }

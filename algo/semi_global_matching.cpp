@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 
 #include "algo/multiversion.hpp"
@@ -22,24 +23,27 @@ constexpr Sum kNeverSum = std::numeric_limits<Sum>::max();
 
 constexpr int kPaths = 4;  // in each of two directions
 
+/// A path's costs at a node stand between the least of them and one that nobody takes before, and
+/// as many that nobody takes as fill a block behind.
+constexpr int kBefore = 2;
 constexpr int PathStride(int labels) {
-    return labels + 3;
+    return kBefore + (labels / kBlock + 1) * kBlock;
 }
 
 /// The way to a node from the one before on a path.
 struct Way {
-    const Cost* before;  ///< costs of the labels there, then of none, then the least of them
+    const Cost* before;  ///< costs of the labels there, see PathStride
     int jump_cost;
 };
 
 /// A row of nodes; each pointer is to the node at its left end.
 struct Line {
+    const std::uint8_t* tried;
     const Cost* costs;
     Sum* sums;
     const std::uint8_t* grey;
     const std::uint8_t* grey_before;  ///< of the row that was swept before
-    Cost* paths;  ///< kPaths of each node: the labels between two that nobody takes, and their
-                  ///< minimum; nodes beyond the border have costs of 0
+    Cost* paths;                      ///< kPaths of each node; beyond the border of cost 0
     const Cost* paths_before;
 };
 
@@ -52,6 +56,13 @@ struct Terms {
     const Cost* jumps;  ///< by difference of grey
 };
 
+/// The labels of one node.
+struct Own {
+    const Cost* costs;
+    int tried;
+    int labels;
+};
+
 /// Cost of label `k` by way of the node before, less the minimum there, which only keeps the
 /// numbers small.
 inline Cost Extended(const Cost* before, Cost least, Cost jump, Cost own, Cost step, int k) {
@@ -60,19 +71,30 @@ inline Cost Extended(const Cost* before, Cost least, Cost jump, Cost own, Cost s
     return static_cast<Cost>(own + cheapest - least);
 }
 
+/// What is not tried costs more than any path.
+inline void Close(const Own& own, Cost least, Cost* path) {
+    path[-2] = least;
+    path[-1] = kNever;
+    int k = own.tried;
+    for (; k % kBlock != 0; ++k) path[k] = kNever;
+    for (; k <= own.labels; k += kBlock) std::memset(path + k, kNever, kBlock);
+}
+
 /// Extends two paths to a node and adds them to its sums; `kept`: the bits of those that count.
 HV_MULTIVERSION
-void ExtendTwo(const Cost* __restrict cost, const Way& a, const Way& b, Cost step, int labels,
-               Cost* __restrict to_a, Cost* __restrict to_b, Sum kept, Sum* __restrict sum) {
+void ExtendTwo(const Own& own, const Way& a, const Way& b, Cost step, Cost* __restrict to_a,
+               Cost* __restrict to_b, Sum kept, Sum* __restrict sum) {
+    const Cost* __restrict cost = own.costs;
+    const int tried = own.tried;
     const Cost* __restrict before_a = a.before;
     const Cost* __restrict before_b = b.before;
-    const Cost least_a = before_a[labels + 1];
-    const Cost least_b = before_b[labels + 1];
+    const Cost least_a = before_a[-2];
+    const Cost least_b = before_b[-2];
     const auto jump_a = static_cast<Cost>(least_a + a.jump_cost);
     const auto jump_b = static_cast<Cost>(least_b + b.jump_cost);
     Cost lowest_a = kNever;
     Cost lowest_b = kNever;
-    for (int k = 0; k < labels; ++k) {
+    for (int k = 0; k < tried; ++k) {
         const Cost at_a = Extended(before_a, least_a, jump_a, cost[k], step, k);
         const Cost at_b = Extended(before_b, least_b, jump_b, cost[k], step, k);
         to_a[k] = at_a;
@@ -81,9 +103,8 @@ void ExtendTwo(const Cost* __restrict cost, const Way& a, const Way& b, Cost ste
         lowest_b = std::min(lowest_b, at_b);
         sum[k] = static_cast<Sum>((sum[k] & kept) + at_a + at_b);
     }
-    to_a[-1] = to_a[labels] = to_b[-1] = to_b[labels] = kNever;
-    to_a[labels + 1] = lowest_a;
-    to_b[labels + 1] = lowest_b;
+    Close(own, lowest_a, to_a);
+    Close(own, lowest_b, to_b);
 }
 
 void VisitNode(const Line& line, const Terms& terms, int col) {
@@ -96,15 +117,15 @@ void VisitNode(const Line& line, const Terms& terms, int col) {
     const auto above = [&](int from, int path) {
         return way(line.paths_before, line.grey_before, from, path);
     };
-    const Cost* cost = line.costs + col * terms.labels;
+    const Own own{line.costs + col * terms.labels, line.tried[col], terms.labels};
     Sum* sum = line.sums + col * terms.labels;
     Cost* to = line.paths + col * kPaths * stride;
     constexpr Sum kAll = -1;
     const Sum kept = terms.down > 0 ? Sum{0} : kAll;  // the first sweep begins anew
-    ExtendTwo(cost, way(line.paths, line.grey, col - terms.down, 0), above(col - 1, 1), terms.step,
-              terms.labels, to, to + stride, kept, sum);
-    ExtendTwo(cost, above(col, 2), above(col + 1, 3), terms.step, terms.labels, to + 2 * stride,
-              to + 3 * stride, kAll, sum);
+    ExtendTwo(own, way(line.paths, line.grey, col - terms.down, 0), above(col - 1, 1), terms.step,
+              to, to + stride, kept, sum);
+    ExtendTwo(own, above(col, 2), above(col + 1, 3), terms.step, to + 2 * stride, to + 3 * stride,
+              kAll, sum);
 }
 
 /// Paths from the row before and from one side.
@@ -157,6 +178,7 @@ SemiGlobalMatching::SemiGlobalMatching(int rows, int max_cols, int labels,
       labels_(labels),
       options_(options),
       grey_(static_cast<std::size_t>(rows * (max_cols + 2))),
+      tried_(Node(rows, 0), static_cast<std::uint8_t>(labels)),
       costs_(At(rows, 0)),
       sums_(At(rows, 0)),
       paths_(static_cast<std::size_t>(2 * (max_cols + 2) * kPaths * PathStride(labels))) {
@@ -173,12 +195,12 @@ void SemiGlobalMatching::Solve() {
 }
 
 SemiGlobalMatching::Answer SemiGlobalMatching::AnswerAt(int row, int col) const {
-    return AnswerFrom(sums_.data() + At(row, col), labels_);
+    return AnswerFrom(sums_.data() + At(row, col), tried_[Node(row, col)]);
 }
 
 SemiGlobalMatching::Cost* SemiGlobalMatching::PathsOf(int line) {
     const int first = (line * (max_cols_ + 2) + 1) * kPaths;
-    return paths_.data() + static_cast<std::ptrdiff_t>(first) * PathStride(labels_) + 1;
+    return paths_.data() + static_cast<std::ptrdiff_t>(first) * PathStride(labels_) + kBefore;
 }
 
 void SemiGlobalMatching::SweepFrom(int first_row, int down) {
@@ -187,9 +209,13 @@ void SemiGlobalMatching::SweepFrom(int first_row, int down) {
                       jump_costs_.data()};
     for (int i = 0; i < rows_; ++i) {
         const int row = first_row + i * down;
-        const Line line{costs(row, 0),  sums_.data() + At(row, 0),
-                        GreyOf(row),    GreyOf(i > 0 ? row - down : row),
-                        PathsOf(i % 2), PathsOf(1 - i % 2)};
+        const Line line{&tried(row, 0),
+                        costs(row, 0),
+                        sums_.data() + At(row, 0),
+                        GreyOf(row),
+                        GreyOf(i > 0 ? row - down : row),
+                        PathsOf(i % 2),
+                        PathsOf(1 - i % 2)};
         SweepRow(line, terms);
     }
 }

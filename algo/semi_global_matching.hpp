@@ -24,10 +24,12 @@ class SemiGlobalMatching {
 
     SemiGlobalMatching(int rows, int max_cols, int labels, const SemiGlobalOptions& options);
 
-    /// The grid of this time: the first `cols` columns, 0..max_cols. All costs and greys are to be
-    /// written anew.
+    /// The grid of this time: the first `cols` columns, 0..max_cols. All costs, greys and numbers
+    /// of labels that are tried are to be written anew.
     void Start(int cols) { cols_ = cols; }
-    /// Costs of the labels of one node, 0..kDearest each.
+    /// How many labels of a node are tried, 1..labels, from the first on. It takes no other.
+    std::uint8_t& tried(int row, int col) { return tried_[Node(row, col)]; }
+    /// Costs of the labels of one node that are tried, 0..kDearest each.
     Cost* costs(int row, int col) { return costs_.data() + At(row, col); }
     /// What the node looks like: labels are thought to jump where it changes.
     std::uint8_t& grey(int row, int col) { return GreyOf(row)[col]; }
@@ -69,6 +71,7 @@ class SemiGlobalMatching {
     SemiGlobalOptions options_;
     std::array<Cost, 256> jump_costs_;  // by difference of grey
     std::vector<std::uint8_t> grey_;
+    std::vector<std::uint8_t> tried_;
     std::vector<Cost> costs_;
     std::vector<Sum> sums_;
     std::vector<Cost> paths_;

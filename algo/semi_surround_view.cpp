@@ -5,6 +5,8 @@
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
+#include "algo/multiversion.hpp"
+
 namespace hitchview::algo {
 namespace {
 
@@ -36,39 +38,50 @@ int ReductionFor(const UnitGeometry& geometry, double scale) {
     return reduction;
 }
 
-/// Means of kSide x kSide samples, kStep bytes apart, for the used part. Constants, so that the
-/// compiler makes vector code of it.
-template <int kSide, int kStep>
-void ReduceRows(const SamplePlane& plane, const cv::Rect& used, cv::Mat1b& reduced) {
-    constexpr int kArea = kSide * kSide;
-    for (int y = used.y; y < used.br().y; ++y) {
-        const std::uint8_t* in = plane.row(y * kSide) + used.x * kSide * kStep;
-        std::uint8_t* out = reduced[y] + used.x;
-        for (int x = 0; x < used.width; ++x) {
-            unsigned sum = kArea / 2;
-            for (int v = 0; v < kSide; ++v) {
-                const std::uint8_t* row =
-                    in + static_cast<std::ptrdiff_t>(v) * plane.stride_bytes + x * kSide * kStep;
-                for (int u = 0; u < kSide; ++u) sum += row[u * kStep];
-            }
-            out[x] = static_cast<std::uint8_t>(sum / kArea);
-        }
+/// Pixels that are blended at a time.
+constexpr int kBlock = 128;
+constexpr int kFractionBits = 5;
+constexpr int kOne = 1 << kFractionBits;
+
+/// Pixels and their right neighbours, in the high byte, of two rows, and where between them.
+struct Block {
+    std::array<std::uint16_t, kBlock> upper;
+    std::array<std::uint16_t, kBlock> lower;
+    std::array<std::uint8_t, kBlock> right;
+    std::array<std::uint8_t, kBlock> below;
+};
+
+inline std::uint16_t PairAt(const std::uint8_t* pixel) {
+    return static_cast<std::uint16_t>(pixel[0] | pixel[1] << 8);
+}
+
+HV_MULTIVERSION
+void Blend(const Block& block, int count, std::uint8_t* __restrict out) {
+    for (int i = 0; i < count; ++i) {
+        const int right = block.right[i];
+        const int below = block.below[i];
+        const auto along = [&](int pair) {
+            return (pair & 0xFF) * (kOne - right) + (pair >> 8) * right;
+        };
+        const int sum = along(block.upper[i]) * (kOne - below) + along(block.lower[i]) * below;
+        out[i] = static_cast<std::uint8_t>((sum + kOne * kOne / 2) >> (2 * kFractionBits));
     }
 }
 
-template <int kSide>
-void ReduceBy(const SamplePlane& plane, const cv::Rect& used, cv::Mat1b& reduced) {
-    if (plane.step_bytes == 1) {
-        ReduceRows<kSide, 1>(plane, used, reduced);
-    } else {
-        ReduceRows<kSide, 2>(plane, used, reduced);
-    }
+int WidestCamera_px(const UnitGeometry& geometry) {
+    int widest = 0;
+    for (int i = 0; i < geometry.cameras(); ++i)
+        widest = std::max(widest, geometry.camera_width_px(i));
+    return widest;
 }
 
 }  // namespace
 
 SemiSurroundView::SemiSurroundView(const UnitGeometry& geometry, double scale)
-    : cameras_(geometry.cameras()), scale_(scale), reduction_(ReductionFor(geometry, scale)) {
+    : cameras_(geometry.cameras()),
+      scale_(scale),
+      reduction_(ReductionFor(geometry, scale)),
+      reducer_(reduction_, WidestCamera_px(geometry) / reduction_) {
     const Projection analysis = geometry.view().Scaled(scale);
     camera_ = cv::Mat_<std::uint8_t>(analysis.height_px, analysis.width_px, kNoCamera);
     sources_.resize(camera_.total());
@@ -105,15 +118,15 @@ void SemiSurroundView::BuildMap(const UnitGeometry& geometry) {
             const Eigen::Vector2d pixel = (best->pixel.array() + 0.5) / reduction_ - 0.5;
             const cv::Mat1b& reduced = reduced_[static_cast<std::size_t>(best->camera)];
             // So that a right and a lower neighbour exist, also after rounding.
-            constexpr double kUnit = 1 << kFractionBits;
-            if (pixel.minCoeff() < 0 || pixel.x() > reduced.cols - 1 - 1 / kUnit ||
-                pixel.y() > reduced.rows - 1 - 1 / kUnit) {
+            if (pixel.minCoeff() < 0 || pixel.x() > reduced.cols - 1 - 1.0 / kOne ||
+                pixel.y() > reduced.rows - 1 - 1.0 / kOne) {
                 continue;
             }
             camera_(y, x) = static_cast<std::uint8_t>(best->camera);
+            const Eigen::Vector2i at = (kOne * pixel).array().round().cast<int>();
             sources_[static_cast<std::size_t>(y * camera_.cols + x)] = {
-                static_cast<std::int16_t>(std::lround(pixel.x() * kUnit)),
-                static_cast<std::int16_t>(std::lround(pixel.y() * kUnit))};
+                (at.y() >> kFractionBits) * reduced.cols + (at.x() >> kFractionBits),
+                static_cast<std::uint8_t>(at.x() % kOne), static_cast<std::uint8_t>(at.y() % kOne)};
         }
     }
 }
@@ -140,13 +153,11 @@ void SemiSurroundView::FindRuns() {
 SemiSurroundView::Run SemiSurroundView::RunFrom(int y, int first) const {
     const std::uint8_t* camera = camera_[y];
     const Source* source = sources_.data() + static_cast<std::ptrdiff_t>(y) * camera_.cols;
-    constexpr int kOne = 1 << kFractionBits;
     Run run{y, first, first, camera[first], true};
     for (; run.end < camera_.cols && camera[run.end] == run.camera; ++run.end) {
         const Source& at = source[run.end];
-        const bool whole = at.x % kOne == 0 && at.y % kOne == 0;
-        const bool beside = run.end == first ||
-                            (at.x == source[run.end - 1].x + kOne && at.y == source[run.end - 1].y);
+        const bool whole = at.right == 0 && at.below == 0;
+        const bool beside = run.end == first || at.offset == source[run.end - 1].offset + 1;
         run.copied = run.copied && whole && beside;
     }
     return run;
@@ -156,9 +167,10 @@ SemiSurroundView::Run SemiSurroundView::RunFrom(int y, int first) const {
 void SemiSurroundView::FindUsed() {
     for (const Run& run : runs_) {
         cv::Rect& used = used_[static_cast<std::size_t>(run.camera)];
+        const int width = reduced_[static_cast<std::size_t>(run.camera)].cols;
         for (int x = run.first; x < run.end; ++x) {
             const Source& at = sources_[static_cast<std::size_t>(run.y * camera_.cols + x)];
-            used |= cv::Rect(at.x >> kFractionBits, at.y >> kFractionBits, 2, 2);
+            used |= cv::Rect(at.offset % width, at.offset / width, 2, 2);
         }
     }
 }
@@ -177,47 +189,34 @@ void SemiSurroundView::Compose(const UnitFrames& frames, cv::Mat1b& view) {
 }
 
 void SemiSurroundView::ComposeRun(const Run& run, cv::Mat1b& view) const {
-    const cv::Mat1b& from = reduced_[static_cast<std::size_t>(run.camera)];
+    const cv::Mat1b& reduced = reduced_[static_cast<std::size_t>(run.camera)];
+    const std::uint8_t* from = reduced[0];
     const Source* source = sources_.data() + static_cast<std::ptrdiff_t>(run.y) * camera_.cols;
     std::uint8_t* out = view[run.y];
-    const auto pixel = [&](const Source& at) {
-        return from[at.y >> kFractionBits] + (at.x >> kFractionBits);
-    };
     if (run.copied) {
-        std::memcpy(out + run.first, pixel(source[run.first]),
-                    static_cast<std::size_t>(run.end - run.first));
+        std::copy_n(from + source[run.first].offset, run.end - run.first, out + run.first);
         return;
     }
-    constexpr int kOne = 1 << kFractionBits;
-    const auto step = static_cast<std::ptrdiff_t>(from.step1());
-    for (int x = run.first; x < run.end; ++x) {
-        const int fx = source[x].x & (kOne - 1);
-        const int fy = source[x].y & (kOne - 1);
-        const std::uint8_t* a = pixel(source[x]);
-        const std::uint8_t* b = a + step;
-        const int top = a[0] * (kOne - fx) + a[1] * fx;
-        const int bottom = b[0] * (kOne - fx) + b[1] * fx;
-        out[x] = static_cast<std::uint8_t>((top * (kOne - fy) + bottom * fy + kOne * kOne / 2) >>
-                                           (2 * kFractionBits));
+    Block block;
+    for (int first = run.first; first < run.end; first += kBlock) {
+        const int count = std::min(kBlock, run.end - first);
+        for (int i = 0; i < count; ++i) {
+            const Source& at = source[first + i];
+            const auto k = static_cast<std::size_t>(i);
+            block.upper[k] = PairAt(from + at.offset);
+            block.lower[k] = PairAt(from + at.offset + reduced.cols);
+            block.right[k] = at.right;
+            block.below[k] = at.below;
+        }
+        Blend(block, count, out + first);
     }
 }
 
 /// A limited range is left as it is: what is tracked and matched are differences, and these come
 /// out one seventh smaller.
 void SemiSurroundView::Reduce(const CameraFrame& frame, int camera) {
-    const SamplePlane luma = frame.LumaSamples();
-    const cv::Rect& used = used_[static_cast<std::size_t>(camera)];
-    cv::Mat1b& reduced = reduced_[static_cast<std::size_t>(camera)];
-    switch (reduction_) {
-        case 1:
-            return ReduceBy<1>(luma, used, reduced);
-        case 2:
-            return ReduceBy<2>(luma, used, reduced);
-        case 4:
-            return ReduceBy<4>(luma, used, reduced);
-        default:
-            return ReduceBy<8>(luma, used, reduced);
-    }
+    const auto i = static_cast<std::size_t>(camera);
+    reducer_.Reduce(frame.LumaSamples(), used_[i], reduced_[i]);
 }
 
 void SemiSurroundView::UpdateMask(const UnitFrames& frames) {

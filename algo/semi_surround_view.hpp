@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "algo/camera_frame.hpp"
+#include "algo/grey_reduction.hpp"
 #include "algo/unit_geometry.hpp"
 
 namespace hitchview::algo {
@@ -40,11 +41,12 @@ class SemiSurroundView {
 
  private:
     static constexpr std::uint8_t kNoCamera = 255;
-    static constexpr int kFractionBits = 5;
-    /// Where a pixel of the view lies in its camera's reduced picture, 1/32 px.
+    /// Where a pixel of the view lies in its camera's reduced picture: that many 1/32 px right of
+    /// and below a pixel, which is given by its number.
     struct Source {
-        std::int16_t x = 0;
-        std::int16_t y = 0;
+        std::int32_t offset = 0;
+        std::uint8_t right = 0;
+        std::uint8_t below = 0;
     };
 
     /// Pixels of one row of the view that come from one camera.
@@ -68,6 +70,7 @@ class SemiSurroundView {
     int cameras_;
     double scale_;
     int reduction_ = 1;  ///< camera pixels per reduced pixel, a power of two
+    GreyReduction reducer_;
     std::array<cv::Mat1b, kMaxCameras> reduced_;
     cv::Mat_<std::uint8_t> camera_;
     std::vector<Source> sources_;

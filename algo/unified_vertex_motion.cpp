@@ -23,13 +23,17 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
                                          const UnifiedVertexMotionOptions& options)
     : canvas_(canvas),
       tractor_view_(geometry[Unit::kTractor]->view()),
+      view_mesh_{{Mesh(tractor_view_), Mesh(tractor_view_)}},
       options_(options),
       estimator_(canvas, geometry, options),
       max_parallax_px_(MaxParallax_px(canvas)),
       max_mesh_parallax_px_(MaxMeshParallax_px(canvas)),
       stitching_(canvas, StitchingOptions(canvas, options.kappa)),
       records_(std::make_unique<std::array<RigMotion, kRecords>>()) {
-    if (geometry[Unit::kTrailer]) trailer_view_ = geometry[Unit::kTrailer]->view();
+    if (geometry[Unit::kTrailer]) {
+        trailer_view_ = geometry[Unit::kTrailer]->view();
+        view_mesh_[Unit::kTrailer] = Mesh(*trailer_view_);
+    }
     for (const Unit unit : kUnits) {
         if (!geometry[unit]) continue;
         smoother_[unit] =
@@ -223,7 +227,7 @@ void UnifiedVertexMotion::Compose(const RigMotion& record) {
 }
 
 Vector2d UnifiedVertexMotion::Moved(Unit unit, const Vector2d& view_px) const {
-    return view_px + Sample(Mesh(view(unit)), view_offset_[unit], view_px);
+    return view_px + Sample(view_mesh_[unit], view_offset_[unit], view_px);
 }
 
 Vector2d UnifiedVertexMotion::OnCanvas(Unit unit, const Vector2d& view_px) const {

@@ -69,6 +69,7 @@ class UnifiedVertexMotion final : public VertexMotion {
     Projection canvas_;
     Projection tractor_view_;
     std::optional<Projection> trailer_view_;
+    PerUnit<Mesh> view_mesh_;
     UnifiedVertexMotionOptions options_;
 
     RigMotionEstimator estimator_;

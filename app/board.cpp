@@ -1,5 +1,6 @@
 #include "app/board.hpp"
 
+#include <cstdio>
 #include <string>
 
 #include "app/camera_ahead.hpp"
@@ -9,6 +10,7 @@
 #include "drivers/simulated_camera.hpp"
 #include "drivers/simulated_can_bus.hpp"
 #include "drivers/simulated_scenario.hpp"
+#include "drivers/socketcan_bus.hpp"
 #include "drivers/steady_clock.hpp"
 #include "drivers/v4l2_camera.hpp"
 
@@ -184,9 +186,23 @@ hal::Checked<hal::Done> Board::OpenCanBus(const RigConfig& config) {
         can_bus_ = std::make_unique<drivers::SimulatedCanBus>(*simulation_, hal::Instant{0});
         return hal::Done{};
     }
+    if (config.can->source == CanConfig::Source::kSocketCan) return OpenSocketCan(config);
     auto bus = drivers::CandumpCanBus::Open(config.can->candump.string(), hal::Instant{0});
     if (!bus) return bus.error();
     can_bus_ = std::move(*bus);
+    return hal::Done{};
+}
+
+hal::Checked<hal::Done> Board::OpenSocketCan(const RigConfig& config) {
+    const HitchAngleSignal& signal = config.can->hitch_angle;
+    auto bus =
+        drivers::SocketCanBus::Open({.interface = config.can->interface,
+                                     .ids = {{.id = signal.id, .extended = signal.IsExtended()}},
+                                     .receive_buffer_bytes = config.can->receive_buffer_bytes});
+    if (!bus) return config.file.string() + ": can.source.socketcan: " + bus.error();
+    if (!(*bus)->remark().empty()) std::fprintf(stderr, "%s\n", (*bus)->remark().c_str());
+    can_bus_ = std::move(*bus);
+    is_can_live_ = true;
     return hal::Done{};
 }
 

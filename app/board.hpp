@@ -36,6 +36,8 @@ class Board {
     [[nodiscard]] LiveFrameSynchronizer* live() { return live_; }
     /// Null when the rig names no CAN bus.
     [[nodiscard]] hal::CanBus* can_bus() { return can_bus_.get(); }
+    /// Whether its frames are received at moments of this machine's clock, not of a recording.
+    [[nodiscard]] bool is_can_live() const { return is_can_live_; }
     [[nodiscard]] hal::Clock& clock() { return *clock_; }
     /// Time from one frame set to the next.
     [[nodiscard]] hal::Instant period() const { return period_; }
@@ -52,12 +54,14 @@ class Board {
                                            const CameraConfig& camera, int slots);
     void StartSets(const RigConfig& config);
     hal::Checked<hal::Done> OpenCanBus(const RigConfig& config);
+    hal::Checked<hal::Done> OpenSocketCan(const RigConfig& config);
 
     std::unique_ptr<hal::Clock> clock_;
     std::unique_ptr<drivers::SimulatedRig> simulation_;
     Cameras cameras_;
     std::vector<LiveCamera> live_cameras_;
     std::unique_ptr<hal::CanBus> can_bus_;
+    bool is_can_live_ = false;
     hal::Instant period_{};
     std::unique_ptr<FrameSynchronizer> sets_;  // last: it uses cameras and clock
     LiveFrameSynchronizer* live_ = nullptr;

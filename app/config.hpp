@@ -118,12 +118,41 @@ struct Corner {
 };
 using Placement = algo::PerUnit<Corner>;
 
+enum class CanByteOrder { kMotorola, kIntel };
+
+/// Where a number stands in a CAN frame.
+struct CanField {
+    int start_bit = 0;     ///< as in DBC files. [0, 511]
+    int length_bits = 16;  ///< [1, 32]
+    CanByteOrder byte_order = CanByteOrder::kIntel;
+    bool is_signed = false;
+};
+
+/// Raw values that are no angle.
+struct HitchAngleCodes {
+    std::vector<std::int64_t> errors{};
+    std::vector<std::int64_t> not_available{};
+};
+
+/// A second signal of the same frame, which says whether the angle may be used.
+struct HitchAngleStatus {
+    CanField field{};
+    std::vector<std::int64_t> valid{};   ///< raw values that say that it may
+    std::vector<std::int64_t> errors{};  ///< that say that the sensor failed; others: not available
+};
+
+/// The frame has the angle only while `field` is `value`.
+struct CanMultiplexor {
+    CanField field{};
+    std::int64_t value = 0;
+};
+
 /// Where the yaw of the trailer stands in a CAN frame: angle = factor * raw + offset.
 struct HitchAngleSignal {
-    enum class ByteOrder { kMotorola, kIntel };
+    using ByteOrder = CanByteOrder;
 
-    std::uint32_t id = 0;  ///< [0, 0x1fffffff]; above 0x7ff: extended
-    int start_bit = 0;     ///< as in DBC files. [0, 511]
+    std::uint32_t id = 0;  ///< [0, 0x1fffffff]
+    int start_bit = 0;     ///< as CanField
     int length_bits = 16;  ///< [1, 32]
     ByteOrder byte_order = ByteOrder::kIntel;
     bool is_signed = false;
@@ -131,13 +160,25 @@ struct HitchAngleSignal {
     double offset_deg = 0.0;  ///< [-100000, 100000]
     double min_deg = -120.0;  ///< below: implausible. [-360, 360]
     double max_deg = 120.0;   ///< above: implausible. [min_deg, 360]
+    bool extended = false;    ///< always so above 0x7ff
+    bool j1939 = true;        ///< the top of the range are the codes of SAE J1939-71
+    HitchAngleCodes codes{};
+    std::optional<HitchAngleStatus> status{};
+    std::optional<CanMultiplexor> multiplexor{};
+    double max_rate_deg_s = 0;  ///< faster: implausible; 0: any rate will do. [0, 10000]
+    std::chrono::milliseconds max_age{1000};  ///< of silence: stale; 0: never. [0, 60000]
+
+    [[nodiscard]] bool IsExtended() const { return extended || id > 0x7ff; }
+    [[nodiscard]] CanField field() const { return {start_bit, length_bits, byte_order, is_signed}; }
 };
 
 struct CanConfig {
-    enum class Source { kSimulated, kCandump };
+    enum class Source { kSimulated, kCandump, kSocketCan };
 
     Source source = Source::kSimulated;
-    std::filesystem::path candump{};  ///< text log as `candump -L` writes it; kCandump only
+    std::filesystem::path candump{};     ///< text log as `candump -L` writes it; kCandump only
+    std::string interface {};            ///< 1 to 15 characters; kSocketCan only
+    int receive_buffer_bytes = 1 << 20;  ///< kSocketCan only. [4096, 2^26]
     HitchAngleSignal hitch_angle{};
 };
 
@@ -185,7 +226,8 @@ struct RigConfig {
 
 /// Reads and checks a rig file. Relative paths in the result stand relative to the file's folder.
 /// The error has one line `file:line: key.path is VALUE, must be ...` for each mistake.
-/// Whether the files it names exist is not looked at. Throws nothing.
+/// A DBC file that it names is read and checked with it; whether the other files exist is not
+/// looked at. Throws nothing.
 hal::Checked<RigConfig> LoadRigConfig(const std::filesystem::path& file);
 
 /// Reads the calibration of a cylinder rig and checks that it has every camera of the rig, on the

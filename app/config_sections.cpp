@@ -29,29 +29,6 @@ using LockMemory = RealTimeConfig::LockMemory;
 constexpr std::array kLockMemory{Choice<LockMemory>{"false", LockMemory::kNever},
                                  Choice<LockMemory>{"try", LockMemory::kTry},
                                  Choice<LockMemory>{"required", LockMemory::kRequired}};
-constexpr std::array kByteOrders{
-    Choice<HitchAngleSignal::ByteOrder>{"motorola", HitchAngleSignal::ByteOrder::kMotorola},
-    Choice<HitchAngleSignal::ByteOrder>{"intel", HitchAngleSignal::ByteOrder::kIntel}};
-
-HitchAngleSignal ReadHitchAngle(const YamlValue& value) {
-    HitchAngleSignal signal;
-    YamlMap map = value.Map();
-    map.Required("id").Read(Range<std::uint32_t>{0, 0x1FFFFFFF}, signal.id);
-    map.Required("start_bit").Read(Range<int>{0, 511}, signal.start_bit);
-    map.Required("length_bits").Read(Range<int>{1, 32}, signal.length_bits);
-    map["byte_order"].Read(kByteOrders, signal.byte_order);
-    map["signed"].Read(signal.is_signed);
-    const YamlValue factor = map.Required("factor_deg");
-    factor.Read({-1000, 1000}, signal.factor_deg);
-    if (signal.factor_deg == 0) factor.Refuse("other than 0");
-    map["offset_deg"].Read({-100000, 100000}, signal.offset_deg);
-    map["min_deg"].Read({-360, 360}, signal.min_deg);
-    const YamlValue max_deg = map["max_deg"];
-    max_deg.Read({-360, 360}, signal.max_deg);
-    if (signal.max_deg <= signal.min_deg) max_deg.Refuse("greater than min_deg");
-    map.Finish();
-    return signal;
-}
 
 void ReadChannel(const YamlValue& value, std::set<std::string>& channels, std::string& out) {
     value.Read(out);
@@ -171,18 +148,6 @@ RealTimeConfig ReadRealTime(const YamlValue& value) {
     map["lock_memory"].Read(kLockMemory, real_time.lock_memory);
     map.Finish();
     return real_time;
-}
-
-std::optional<CanConfig> ReadCan(const YamlValue& value, const ConfigContext& context) {
-    if (!value.given()) return std::nullopt;
-    CanConfig can;
-    YamlMap map = value.Map();
-    if (ReadSource(map.Required("source"), "candump", context, can.candump)) {
-        can.source = CanConfig::Source::kCandump;
-    }
-    can.hitch_angle = ReadHitchAngle(map.Required("hitch_angle"));
-    map.Finish();
-    return can;
 }
 
 PublishConfig ReadPublish(const YamlValue& value) {

@@ -39,6 +39,7 @@ StabilizationConfig ReadStabilization(const calib::YamlValue& value);
 void ReadThreads(const calib::YamlValue& value, RigConfig& config);
 RealTimeConfig ReadRealTime(const calib::YamlValue& value);
 StitchingConfig ReadStitching(const calib::YamlValue& value);
+/// In config_can.cpp. Reads the DBC file too, if there is one.
 std::optional<CanConfig> ReadCan(const calib::YamlValue& value, const ConfigContext& context);
 PublishConfig ReadPublish(const calib::YamlValue& value);
 

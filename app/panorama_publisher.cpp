@@ -110,7 +110,8 @@ void PanoramaPublisher::SendStatus(const Item& item) {
 void PanoramaPublisher::SendHitchAngles() {
     if (telemetry_ == nullptr) return;
     while (auto angle = telemetry_->Take()) {
-        angle->received_at += hal::Instant(start_ns_.load(std::memory_order_acquire));
+        if (!options_.live_telemetry)
+            angle->received_at += hal::Instant(start_ns_.load(std::memory_order_acquire));
         Count(publisher_.Publish(*angle));
     }
 }

@@ -168,6 +168,17 @@ json Articulation(const RunSummary& run) {
     return report;
 }
 
+/// Null where no bus was read.
+json Can(const std::optional<CanSummary>& can) {
+    if (!can) return nullptr;
+    return {{"frames", can->frames},
+            {"angles", can->angles},
+            {"angles_refused", can->angles_refused},
+            {"dropped", can->dropped},
+            {"errors", can->errors},
+            {"disconnections", can->disconnections}};
+}
+
 }  // namespace
 
 json MakeReport(const RunSummary& run, const json& quality) {
@@ -200,6 +211,7 @@ json MakeReport(const RunSummary& run, const json& quality) {
                                    : json();
     }
     report["articulation"] = Articulation(run);
+    report["can"] = Can(run.can);
     FillIn(quality, report);
     return report;
 }

@@ -126,6 +126,7 @@ void Complete(const RigConfig& config, Board& board, const RunOutputs& outputs,
         summary.live = live->Summarise();
     }
     summary.publishing = outputs.times();
+    summary.can = outputs.can();
     for (const algo::Unit unit : algo::kUnits) {
         for (std::size_t i = 0; i < config.units[unit].cameras.size(); ++i)
             summary.pools.push_back(

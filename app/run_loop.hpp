@@ -57,6 +57,16 @@ struct PoolSummary {
     hal::PoolLevel level;
 };
 
+/// What became of the frames of the CAN bus.
+struct CanSummary {
+    std::uint64_t frames = 0;          ///< received
+    std::uint64_t angles = 0;          ///< handed to the publisher, those without a value too
+    std::uint64_t angles_refused = 0;  ///< lost: the publisher was too slow
+    std::uint64_t dropped = 0;         ///< frames that the kernel had no room for
+    std::uint64_t errors = 0;          ///< error frames
+    std::uint64_t disconnections = 0;
+};
+
 /// What a run did.
 struct RunSummary {
     std::uint64_t frames = 0;           ///< panoramas shown
@@ -74,6 +84,7 @@ struct RunSummary {
     ArticulationSummary articulation{};
     algo::PerUnit<int> cameras;
     MemorySummary memory{};
+    std::optional<CanSummary> can{};  ///< when the run has ended; empty where no bus was read
     bool ring = false;
     std::optional<LiveSummary> live{};  ///< of cameras that run at their own pace
 };

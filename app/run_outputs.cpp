@@ -91,9 +91,12 @@ hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const R
     auto network = board.OpenPublisher(config.publish);
     if (!network) return network.error();
     network_ = std::move(*network);
-    if (board.can_bus() != nullptr) {
-        telemetry_ = std::make_unique<TelemetryThread>(*board.can_bus(), config.can->hitch_angle,
-                                                       TelemetryOptions{.paced = true});
+    can_bus_ = board.can_bus();
+    if (can_bus_ != nullptr) {
+        const bool live = board.is_can_live();
+        telemetry_ = std::make_unique<TelemetryThread>(
+            *can_bus_, config.can->hitch_angle,
+            TelemetryOptions{.paced = !live, .clock = live ? &board.clock() : nullptr});
     }
     publisher_ = std::make_unique<PanoramaPublisher>(
         *network_, board.clock(), telemetry_.get(), format,
@@ -101,6 +104,7 @@ hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const R
                                           .highest_quality = config.publish.jpeg_quality},
                                  .calibration_id = run.calibration_id,
                                  .drop_when_late = options.realtime,
+                                 .live_telemetry = board.is_can_live(),
                                  .threads = options.workers.value_or(config.workers)});
     return hal::Done{};
 }
@@ -133,6 +137,18 @@ void RunOutputs::Publish(const ShownPanorama& shown, const RunSummary& run) {
 void RunOutputs::AddPools(std::vector<PoolSummary>& pools) const {
     if (publisher_) pools.push_back({"panorama", publisher_->pool()});
     if (telemetry_) pools.push_back({"hitch_angle", telemetry_->pool()});
+}
+
+std::optional<CanSummary> RunOutputs::can() const {
+    if (!telemetry_) return std::nullopt;
+    const TelemetryCounts angles = telemetry_->counts();
+    const hal::CanCounts bus = can_bus_->counts();
+    return CanSummary{.frames = angles.frames,
+                      .angles = angles.angles,
+                      .angles_refused = angles.refused,
+                      .dropped = bus.dropped,
+                      .errors = bus.errors,
+                      .disconnections = bus.disconnections};
 }
 
 hal::Checked<hal::Done> RunOutputs::Finish() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "app/panorama_publisher.hpp"
 #include "app/pipeline.hpp"
@@ -31,6 +32,8 @@ class RunOutputs {
     [[nodiscard]] PublishTimes times() const {
         return publisher_ ? publisher_->times() : PublishTimes{};
     }
+    /// Of the CAN bus so far; empty where none is read.
+    [[nodiscard]] std::optional<CanSummary> can() const;
     void AddPools(std::vector<PoolSummary>& pools) const;
     [[nodiscard]] std::uint64_t dropped() const { return publisher_ ? publisher_->dropped() : 0; }
 
@@ -47,6 +50,7 @@ class RunOutputs {
     std::unique_ptr<VideoWriter> panorama_;
     algo::PerUnit<std::unique_ptr<VideoWriter>> views_;
     std::unique_ptr<hal::Publisher> network_;
+    hal::CanBus* can_bus_ = nullptr;
     std::unique_ptr<TelemetryThread> telemetry_;
     std::unique_ptr<PanoramaPublisher> publisher_;
 };

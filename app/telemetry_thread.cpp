@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include "app/hitch_angle_decoder.hpp"
 #include "app/thread_schedule.hpp"
 #include "hal/expect.hpp"
 
@@ -19,7 +18,7 @@ constexpr std::chrono::milliseconds kLongestWait{50};
 TelemetryThread::TelemetryThread(hal::CanBus& bus, const HitchAngleSignal& signal,
                                  const TelemetryOptions& options)
     : bus_(bus),
-      signal_(signal),
+      monitor_(signal),
       options_(options),
       reached_ns_(options.paced ? Limits::min() : Limits::max()) {
     HV_EXPECT(options.retry_after.count() > 0);
@@ -59,20 +58,28 @@ void TelemetryThread::Work() {
         const hal::Result<hal::CanFrame> frame = bus_.WaitFrame(kLongestWait);
         if (frame) {
             HandOver(frame.value());
-        } else if (frame.error() == hal::Error::kEndOfStream) {
-            return;
-        } else if (frame.error() != hal::Error::kTimeout) {
-            RestAfterFailure();
+            continue;
         }
+        if (frame.error() == hal::Error::kEndOfStream) return;
+        TellSilence();
+        if (frame.error() != hal::Error::kTimeout) RestAfterFailure();
     }
 }
 
 void TelemetryThread::HandOver(const hal::CanFrame& frame) {
     ++frames_;
-    const std::optional<hal::HitchAngle> maybe_angle = DecodeHitchAngle(signal_, frame);
+    HandOver(monitor_.Stale(frame.received_at));
+    HandOver(monitor_.Decode(frame));
+}
+
+void TelemetryThread::HandOver(const std::optional<hal::HitchAngle>& maybe_angle) {
     if (!maybe_angle) return;
-    HoldUntil(frame.received_at);
+    HoldUntil(maybe_angle->received_at);
     if (!stop_ && angles_.Append(*maybe_angle)) ++handed_over_;
+}
+
+void TelemetryThread::TellSilence() {
+    if (options_.clock != nullptr) HandOver(monitor_.Stale(options_.clock->Now()));
 }
 
 void TelemetryThread::HoldUntil(Instant received_at) {

@@ -9,7 +9,9 @@
 #include <thread>
 
 #include "app/config.hpp"
+#include "app/hitch_angle_decoder.hpp"
 #include "hal/can_bus.hpp"
+#include "hal/clock.hpp"
 #include "hal/hitch_angle.hpp"
 #include "hal/ring.hpp"
 
@@ -19,13 +21,15 @@ struct TelemetryOptions {
     /// For recordings and simulation, which answer at once: an angle is held back until the frame
     /// sets have reached its moment. False for a live bus: it is handed over as it comes.
     bool paced = true;
+    /// Of a live bus: tells how long it has been silent. Null: only the frames themselves do.
+    const hal::Clock* clock = nullptr;
     std::chrono::milliseconds retry_after{200};  ///< after a bus that failed. > 0
 };
 
 /// Since the start.
 struct TelemetryCounts {
     std::uint64_t frames = 0;    ///< received from the bus, of all ids
-    std::uint64_t angles = 0;    ///< decoded and handed over
+    std::uint64_t angles = 0;    ///< decoded, or found stale, and handed over
     std::uint64_t refused = 0;   ///< decoded and lost: nobody took the earlier ones
     std::uint64_t failures = 0;  ///< bus disconnected or failed; tried again
 };
@@ -60,11 +64,13 @@ class TelemetryThread {
  private:
     void Work();
     void HandOver(const hal::CanFrame& frame);
+    void HandOver(const std::optional<hal::HitchAngle>& maybe_angle);
+    void TellSilence();
     void HoldUntil(hal::Instant received_at);
     void RestAfterFailure();
 
     hal::CanBus& bus_;
-    const HitchAngleSignal signal_;
+    HitchAngleMonitor monitor_;  // the thread's
     const TelemetryOptions options_;
 
     hal::Ring<hal::HitchAngle, kCapacity> angles_;

@@ -13,6 +13,7 @@ namespace hitchview::drivers {
 namespace {
 
 using hal::CanFrame;
+using hal::CanFrameKind;
 using hal::Checked;
 using hal::Done;
 using hal::Instant;
@@ -24,11 +25,8 @@ constexpr std::uint64_t kLargestSecond = 9'000'000'000;  // of those whose nanos
 constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
 constexpr std::size_t kLargestClassicSize = 8;
 
-enum class Kind { kData, kRemote, kError };
-
 struct Line {
     std::string_view interface;
-    Kind kind = Kind::kData;
     CanFrame frame{};  // received_at is the time in the log
 };
 
@@ -75,7 +73,8 @@ Checked<Done> ParseId(std::string_view text, Line& line) {
     }
     line.frame.id = static_cast<std::uint32_t>(*maybe_id);
     if (line.frame.extended && std::bit_floor(line.frame.id) == kErrorFlag) {
-        line.kind = Kind::kError;
+        line.frame.kind = CanFrameKind::kError;
+        line.frame.id -= kErrorFlag;
     } else if (line.frame.id > (line.frame.extended ? kLargestExtendedId : kLargestStandardId)) {
         return Wrong("id", text,
                      "at most 7FF, or with 8 digits at most 1FFFFFFF (error: 3FFFFFFF)");
@@ -83,9 +82,11 @@ Checked<Done> ParseId(std::string_view text, Line& line) {
     return Done{};
 }
 
-bool IsRemote(std::string_view data) {
-    if (!data.starts_with('R')) return false;
-    return data.size() == 1 || (data.size() == 2 && data[1] >= '0' && data[1] <= '8');
+// The bytes that are asked for; empty where it is no remote frame.
+std::optional<std::uint8_t> RemoteSize(std::string_view data) {
+    if (data == "R") return std::uint8_t{0};
+    const bool is_remote = data.size() == 2 && data[0] == 'R' && data[1] >= '0' && data[1] <= '8';
+    return is_remote ? std::optional<std::uint8_t>(data[1] - '0') : std::nullopt;
 }
 
 bool IsFdSize(std::size_t bytes) {
@@ -104,7 +105,10 @@ Checked<Done> ParseBytes(std::string_view text, CanFrame& frame) {
 }
 
 Checked<Done> ParseFdData(std::string_view text, CanFrame& frame) {
-    if (!Number(text.substr(0, 1), 16)) return Wrong("flags of FD frame", text, "one hex digit");
+    const auto maybe_flags = Number(text.substr(0, 1), 16);
+    if (!maybe_flags) return Wrong("flags of FD frame", text, "one hex digit");
+    frame.fd = true;
+    frame.fd_flags = static_cast<std::uint8_t>(*maybe_flags);
     const std::string_view data = text.substr(1);
     if (data.size() % 2 != 0 || !IsFdSize(data.size() / 2)) {
         return Wrong("data of FD frame", data, "0 to 8, 12, 16, 20, 24, 32, 48 or 64 whole bytes");
@@ -114,8 +118,9 @@ Checked<Done> ParseFdData(std::string_view text, CanFrame& frame) {
 
 Checked<Done> ParseData(std::string_view text, Line& line) {
     if (text.starts_with('#')) return ParseFdData(text.substr(1), line.frame);
-    if (IsRemote(text)) {
-        if (line.kind == Kind::kData) line.kind = Kind::kRemote;
+    if (const auto maybe_size = RemoteSize(text)) {
+        if (line.frame.kind == CanFrameKind::kData) line.frame.kind = CanFrameKind::kRemote;
+        line.frame.size_bytes = *maybe_size;
         return Done{};
     }
     if (text.size() % 2 != 0 || text.size() / 2 > kLargestClassicSize) {
@@ -162,15 +167,15 @@ Checked<Done> ReadText(const std::filesystem::path& file, std::string& text) {
     return file.string() + ": cannot be read";
 }
 
-void Count(Kind kind, CandumpCanBus::Counts& counts) {
+void Count(CanFrameKind kind, CandumpCanBus::LogCounts& counts) {
     switch (kind) {
-        case Kind::kData:
+        case CanFrameKind::kData:
             ++counts.data;
             break;
-        case Kind::kRemote:
+        case CanFrameKind::kRemote:
             ++counts.remote;
             break;
-        case Kind::kError:
+        case CanFrameKind::kError:
             ++counts.error;
             break;
     }
@@ -179,10 +184,10 @@ void Count(Kind kind, CandumpCanBus::Counts& counts) {
 }  // namespace
 
 Checked<std::unique_ptr<CandumpCanBus>> CandumpCanBus::Open(const std::filesystem::path& file,
-                                                            Instant start) {
+                                                            Instant start, Kinds kinds) {
     std::string text;
     if (auto read = ReadText(file, text); !read) return read.error();
-    std::unique_ptr<CandumpCanBus> self(new CandumpCanBus(std::move(text)));
+    std::unique_ptr<CandumpCanBus> self(new CandumpCanBus(std::move(text), kinds));
     if (auto checked = self->Check(file.string(), start); !checked) return checked.error();
     return self;
 }
@@ -202,7 +207,7 @@ Checked<Done> CandumpCanBus::Check(const std::string& file, Instant start) {
             return at(number) + Wrong("interface", line.value().interface,
                                       std::string(interface) + " as in line 1");
         }
-        Count(line.value().kind, counts_);
+        Count(line.value().frame.kind, log_counts_);
     }
     return Done{};
 }
@@ -210,11 +215,17 @@ Checked<Done> CandumpCanBus::Check(const std::string& file, Instant start) {
 hal::Result<CanFrame> CandumpCanBus::DoWaitFrame(std::chrono::milliseconds /*timeout*/) {
     while (!rest_.empty()) {
         Line line = ParseLine(TakeUntil('\n', rest_)).value();  // Open has checked every line
-        if (line.kind != Kind::kData) continue;
+        if (line.frame.kind != CanFrameKind::kData && kinds_ == Kinds::kData) continue;
+        ++delivered_;
+        line.frame.epoch = line.frame.received_at;
         line.frame.received_at += log_to_ours_;
         return line.frame;
     }
     return hal::Error::kEndOfStream;
+}
+
+hal::CanCounts CandumpCanBus::DoCounts() const {
+    return {.delivered = delivered_, .errors = log_counts_.error};
 }
 
 }  // namespace hitchview::drivers

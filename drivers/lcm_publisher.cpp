@@ -29,6 +29,7 @@ static_assert(int(Quality::kValid) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_VALID);
 static_assert(int(Quality::kNotAvailable) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_NOT_AVAILABLE);
 static_assert(int(Quality::kError) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_ERROR);
 static_assert(int(Quality::kImplausible) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_IMPLAUSIBLE);
+static_assert(int(Quality::kStale) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_STALE);
 
 /// Room for everything in an image message that is not its JPEG.
 constexpr int kEnvelopeBytes = 1024;

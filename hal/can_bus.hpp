@@ -9,13 +9,27 @@
 
 namespace hitchview::hal {
 
+enum class CanFrameKind : std::uint8_t {
+    kData,
+    kRemote,  ///< asks another node for `size_bytes` bytes; has none itself
+    kError,   ///< made by the controller: `id` has the bits of the error classes
+};
+
 /// One frame of a classic or FD bus.
 struct CanFrame {
     std::uint32_t id = 0;  ///< 11 or 29 bits, without flags
     bool extended = false;
+    CanFrameKind kind = CanFrameKind::kData;  ///< others come only from a bus opened to record
+    bool fd = false;                          ///< a data frame in the FD format
+    std::uint8_t fd_flags = 0;    ///< FD: 1 bit rate switched, 2 sender passive, 4 always or never
     std::uint8_t size_bytes = 0;  ///< 0..8 classic, 0..64 FD
     std::array<std::uint8_t, 64> data{};
     Instant received_at{};
+    /// The same moment as the wall clock showed it then, since 1970; 0: not known. For logs only:
+    /// it may step.
+    std::chrono::nanoseconds epoch{};
+
+    bool operator==(const CanFrame&) const = default;
 };
 
 /// What became of a bus's frames since it was opened.

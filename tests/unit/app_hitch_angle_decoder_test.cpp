@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -232,6 +233,77 @@ TEST(HitchAngleDecoderTest, TheSameNumberInTheOtherIdFormatIsAnotherId) {
     EXPECT_TRUE(DecodeHitchAngle(signal, frame));
     frame.extended = false;
     EXPECT_FALSE(DecodeHitchAngle(signal, frame));
+}
+
+TEST(HitchAngleDecoderTest, WithoutTheCodesOfJ1939TheWholeRangeIsAngles) {
+    HitchAngleSignal signal = Plain(16);
+    signal.j1939 = false;
+    EXPECT_EQ(QualityOf(signal, PlainFrame(0xffff)), HitchAngleQuality::kValid);
+    EXPECT_EQ(QualityOf(signal, PlainFrame(0xfe00)), HitchAngleQuality::kValid);
+}
+
+TEST(HitchAngleDecoderTest, RemoteAndErrorFramesHaveNoAngle) {
+    for (const auto kind : {hal::CanFrameKind::kRemote, hal::CanFrameKind::kError}) {
+        CanFrame frame = FordFrame(900);
+        frame.kind = kind;
+        EXPECT_FALSE(DecodeHitchAngle(Ford(), frame));
+    }
+}
+
+// A frame of 0.1 degree steps, `degrees` at millisecond `time_ms`.
+CanFrame FordAt(double degrees, int time_ms) {
+    CanFrame frame = FordFrame(static_cast<unsigned>(std::lround((degrees + 90) * 10)));
+    frame.received_at = std::chrono::milliseconds(time_ms);
+    return frame;
+}
+
+TEST(HitchAngleMonitorTest, AJumpIsImplausibleUntilTheAngleCouldHaveTurnedSoFar) {
+    HitchAngleSignal signal = Ford();
+    signal.max_rate_deg_s = 100;
+    HitchAngleMonitor monitor(signal);
+    const auto quality = [&](double degrees, int time_ms) {
+        return monitor.Decode(FordAt(degrees, time_ms))->quality;
+    };
+    EXPECT_EQ(quality(40, 0), HitchAngleQuality::kValid) << "the first";
+    EXPECT_EQ(quality(42, 20), HitchAngleQuality::kValid) << "just the rate";
+    EXPECT_EQ(quality(52, 40), HitchAngleQuality::kImplausible);
+    EXPECT_EQ(quality(52, 60), HitchAngleQuality::kImplausible);
+    EXPECT_EQ(quality(43, 80), HitchAngleQuality::kValid) << "it was a glitch";
+    EXPECT_EQ(quality(53, 100), HitchAngleQuality::kImplausible);
+    EXPECT_EQ(quality(53, 181), HitchAngleQuality::kValid) << "it was not";
+}
+
+TEST(HitchAngleMonitorTest, OneStepOfTheSignalIsNoJumpHoweverShortTheTime) {
+    HitchAngleSignal signal = Ford();
+    signal.max_rate_deg_s = 1;
+    HitchAngleMonitor monitor(signal);
+    monitor.Decode(FordAt(10, 5));
+    EXPECT_EQ(monitor.Decode(FordAt(10.1, 5))->quality, HitchAngleQuality::kValid);
+}
+
+TEST(HitchAngleMonitorTest, SilenceIsToldOnceAndAgainAfterTheNextFrame) {
+    using std::chrono::milliseconds;
+    HitchAngleSignal signal = Ford();
+    signal.max_age = milliseconds(100);
+    HitchAngleMonitor monitor(signal);
+    EXPECT_FALSE(monitor.Stale(milliseconds(1000))) << "the start";
+    EXPECT_FALSE(monitor.Stale(milliseconds(1100)));
+    const auto stale = monitor.Stale(milliseconds(1170));
+    ASSERT_TRUE(stale);
+    EXPECT_EQ(stale->quality, HitchAngleQuality::kStale);
+    EXPECT_EQ(stale->received_at, milliseconds(1100)) << "when it became so";
+    EXPECT_FALSE(monitor.Stale(milliseconds(9000)));
+    monitor.Decode(FordAt(4, 9100));
+    EXPECT_FALSE(monitor.Stale(milliseconds(9200)));
+    EXPECT_TRUE(monitor.Stale(milliseconds(9201)));
+}
+
+TEST(HitchAngleMonitorTest, WithoutALargestAgeSilenceIsNothing) {
+    HitchAngleSignal signal = Ford();
+    signal.max_age = {};
+    HitchAngleMonitor monitor(signal);
+    monitor.Stale(std::chrono::seconds(1));
+    EXPECT_FALSE(monitor.Stale(std::chrono::hours(10)));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "app/telemetry_thread.hpp"
 #include "hal/fake_can_bus.hpp"
+#include "hal/fake_clock.hpp"
 #include "tests/support/heap_calls.hpp"
 
 namespace hitchview::app {
@@ -107,6 +108,31 @@ TEST(TelemetryThreadTest, ADisconnectedBusIsTriedAgainAndCounted) {
     TelemetryThread telemetry(bus, ByteSignal(), kLive);
     EXPECT_EQ(WaitTake(telemetry).received_at, milliseconds(1));
     EXPECT_EQ(telemetry.counts().failures, 2U);
+}
+
+TEST(TelemetryThreadTest, AGapInARecordingIsToldBeforeTheFrameThatEndsIt) {
+    hal::FakeCanBus bus({FrameAt(1), FrameAt(5000)});
+    TelemetryThread telemetry(bus, ByteSignal(), {});
+    telemetry.Advance(milliseconds(5000));
+    EXPECT_EQ(WaitTake(telemetry).received_at, milliseconds(1));
+    const HitchAngle stale = WaitTake(telemetry);
+    EXPECT_EQ(stale.quality, hal::HitchAngleQuality::kStale);
+    EXPECT_EQ(stale.received_at, milliseconds(1001));
+    EXPECT_EQ(WaitTake(telemetry).received_at, milliseconds(5000));
+}
+
+TEST(TelemetryThreadTest, ALiveBusThatFallsSilentIsToldByTheClock) {
+    hal::FakeClock clock;
+    clock.Advance(milliseconds(500));
+    hal::FakeCanBus bus({FrameAt(1), Error::kTimeout, Error::kDisconnected, FrameAt(600)});
+    TelemetryOptions options = kLive;
+    options.clock = &clock;
+    HitchAngleSignal signal = ByteSignal();
+    signal.max_age = milliseconds(100);
+    TelemetryThread telemetry(bus, signal, options);
+    EXPECT_EQ(WaitTake(telemetry).quality, hal::HitchAngleQuality::kValid);
+    EXPECT_EQ(WaitTake(telemetry).quality, hal::HitchAngleQuality::kStale);
+    EXPECT_EQ(WaitTake(telemetry).received_at, milliseconds(600));
 }
 
 TEST(TelemetryThreadTest, WhatNobodyTakesIsRefusedAndCounted) {

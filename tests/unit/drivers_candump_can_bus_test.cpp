@@ -99,9 +99,9 @@ TEST_F(CandumpCanBusTest, RemoteAndErrorFramesAreCountedAndSkipped) {
         "(1700000000.000000) can0 20000004#0000000000000000\n"
         "(1700000001.000000) can0 457#01\n"
         "(1700000002.000000) can0 3FFFFFFF#R\n");
-    EXPECT_EQ(bus->counts().data, 1U);
-    EXPECT_EQ(bus->counts().remote, 2U);
-    EXPECT_EQ(bus->counts().error, 2U);
+    EXPECT_EQ(bus->log_counts().data, 1U);
+    EXPECT_EQ(bus->log_counts().remote, 2U);
+    EXPECT_EQ(bus->log_counts().error, 2U);
     const auto frames = ReadAll(*bus);
     ASSERT_EQ(frames.size(), 1U);
     EXPECT_EQ(frames[0].received_at, kStart + std::chrono::seconds(1));

@@ -70,6 +70,11 @@ expect_caught(app/rig_geometry.cpp [["hal/publisher.hpp"]] "reached: app/rig_geo
 expect_caught(app/pipeline.hpp [["hal/publisher.hpp"]]
     "reached: app/pipeline.hpp -> hal/publisher.hpp -> hal/hitch_angle.hpp")
 
+expect_caught(app/pipeline.hpp [["app/dbc_file.hpp"]] "reached: app/pipeline.hpp -> app/dbc_file.hpp")
+expect_caught(app/config.hpp [["app/can_field.hpp"]] "reached: app/pipeline.hpp -> app/config.hpp -> app/can_field.hpp")
+expect_caught(algo/camera_model.hpp [["drivers/socketcan_bus.hpp"]]
+    "reached: algo/camera_model.hpp -> drivers/socketcan_bus.hpp")
+
 file(REMOVE_RECURSE ${WORK}/tree ${WORK}/empty)
 file(MAKE_DIRECTORY ${WORK}/empty)
 check(${WORK}/empty nothing)

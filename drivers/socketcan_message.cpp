@@ -1,0 +1,101 @@
+#include "drivers/socketcan_message.hpp"
+
+#include <linux/errqueue.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+
+namespace hitchview::drivers {
+namespace {
+
+using hal::CanFrameKind;
+using hal::Instant;
+
+constexpr std::uint8_t kFdFlags = 0xf;
+
+Instant InstantOf(const timespec& time) {
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+Instant Now(clockid_t clock) {
+    timespec time{};
+    clock_gettime(clock, &time);
+    return InstantOf(time);
+}
+
+CanFrameKind KindOf(canid_t id) {
+    if ((id & CAN_ERR_FLAG) != 0) return CanFrameKind::kError;
+    return (id & CAN_RTR_FLAG) != 0 ? CanFrameKind::kRemote : CanFrameKind::kData;
+}
+
+// A stamp that was not taken is 0.
+std::optional<Instant> Given(const timespec& time) {
+    const Instant instant = InstantOf(time);
+    return instant.count() == 0 ? std::nullopt : std::optional(instant);
+}
+
+}  // namespace
+
+SocketCanMessage::SocketCanMessage() : place_{&frame_, sizeof frame_} {
+    header_.msg_iov = &place_;
+    header_.msg_iovlen = 1;
+    header_.msg_control = control_.data();
+}
+
+int SocketCanMessage::Receive(int socket) {
+    header_.msg_controllen = control_.size();
+    const ssize_t bytes = recvmsg(socket, &header_, MSG_DONTWAIT);
+    if (bytes < 0) {
+        header_.msg_controllen = 0;
+        return errno;
+    }
+    fd_ = bytes == CANFD_MTU;
+    return fd_ || bytes == CAN_MTU ? 0 : EBADMSG;
+}
+
+hal::CanFrame SocketCanMessage::frame() const {
+    hal::CanFrame frame;
+    frame.kind = KindOf(frame_.can_id);
+    frame.extended = (frame_.can_id & CAN_EFF_FLAG) != 0 || frame.kind == CanFrameKind::kError;
+    frame.id = frame_.can_id & (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK);
+    frame.fd = fd_;
+    frame.fd_flags = fd_ ? frame_.flags & kFdFlags : 0;
+    const std::size_t largest = fd_ ? CANFD_MAX_DLEN : CAN_MAX_DLEN;
+    frame.size_bytes = static_cast<std::uint8_t>(std::min<std::size_t>(frame_.len, largest));
+    if (frame.kind != CanFrameKind::kRemote) {
+        std::copy_n(std::begin(frame_.data), frame.size_bytes, frame.data.begin());
+    }
+    return frame;
+}
+
+SocketCanStamps SocketCanMessage::stamps() const {
+    SocketCanStamps stamps{.wall_now = Now(CLOCK_REALTIME), .now = Now(CLOCK_MONOTONIC)};
+    scm_timestamping given{};
+    const cmsghdr* const found = Find(SCM_TIMESTAMPING, sizeof given);
+    if (found == nullptr) return stamps;
+    std::memcpy(&given, CMSG_DATA(found), sizeof given);
+    stamps.software = Given(given.ts[0]);
+    stamps.hardware = Given(given.ts[2]);
+    return stamps;
+}
+
+std::optional<std::uint32_t> SocketCanMessage::dropped() const {
+    std::uint32_t dropped = 0;
+    const cmsghdr* const found = Find(SO_RXQ_OVFL, sizeof dropped);
+    if (found == nullptr) return std::nullopt;
+    std::memcpy(&dropped, CMSG_DATA(found), sizeof dropped);
+    return dropped;
+}
+
+const cmsghdr* SocketCanMessage::Find(int type, std::size_t bytes) const {
+    msghdr header = header_;  // the macros want one that they could write to
+    for (cmsghdr* one = CMSG_FIRSTHDR(&header); one != nullptr; one = CMSG_NXTHDR(&header, one)) {
+        const bool wanted = one->cmsg_level == SOL_SOCKET && one->cmsg_type == type;
+        if (wanted && one->cmsg_len >= CMSG_LEN(bytes)) return one;
+    }
+    return nullptr;
+}
+
+}  // namespace hitchview::drivers
