@@ -236,7 +236,7 @@ class Drawing {
     template <Part kPart, int kLogStep>
     HWY_NOINLINE void ReadAs(const BlockSource& source) {
         const CameraSampler::Tone tone = source.camera->tone();
-        SegmentLines shift[Kind::kChannels];
+        SegmentLines shift[Kind::kChannels] = {};  // read only where source.shifted
         if (source.shifted) FindShift(source, shift);
         const Samples plane = Kind::Plane(source.camera->frame());
         const SampleWindows& windows = Kind::Windows(source);
