@@ -18,11 +18,6 @@ constexpr float kFiller = 1e-3F;
 /// knows, and any other camera outweighs it.
 constexpr float kAbsent = 1e-6F;
 
-bool Inside(const UnitGeometry& geometry, int camera, const Vector2d& pixel) {
-    return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= geometry.camera_width_px(camera) - 1 &&
-           pixel.y() <= geometry.camera_height_px(camera) - 1;
-}
-
 }  // namespace
 
 ComposedMap::UnitMap::UnitMap(const Projection& canvas, const UnitGeometry& unit_geometry)
@@ -44,11 +39,14 @@ ComposedMap::ComposedMap(const Projection& canvas,
     for (const Unit unit : kUnits) {
         first_source_[unit] = static_cast<int>(sources_.size());
         covered_[unit].assign(corners, 0);
+        main_camera_[unit].assign(corners, 0);
         if (!geometry[unit]) continue;
         units_[unit] = std::make_unique<UnitMap>(canvas, *geometry[unit]);
         for (int i = 0; i < geometry[unit]->cameras(); ++i) {
-            sources_.push_back({unit, i, std::vector<Corner>(corners), std::vector<float>(corners),
-                                std::vector<Columns>(static_cast<std::size_t>(rows_))});
+            sources_.push_back(
+                {unit, i, std::vector<Corner>(corners), std::vector<float>(corners),
+                 std::vector<Columns>(static_cast<std::size_t>(rows_), Columns{cols_, -1}),
+                 std::vector<Columns>(static_cast<std::size_t>(rows_))});
         }
     }
 }
@@ -76,7 +74,7 @@ void ComposedMap::BuildFor(const Composition& composition, const RigPictures* pi
     }
     runner.Run(rows_, [&](int row) {
         MeasureDiscrepancy(composition, row);
-        LocateRow(composition, row);
+        Locate(composition, row, {0, cols_ - 1});
     });
     UpdateSeams(composition, pictures, runner);
     FadeDetail(composition, runner);
@@ -92,10 +90,6 @@ void ComposedMap::MeasureDiscrepancy(const Composition& composition, int row) {
     }
 }
 
-void ComposedMap::LocateRow(const Composition& composition, int row) {
-    for (int col = 0; col < cols_; ++col) LocateCorner(composition, row, col);
-}
-
 /// The seams were chosen with all of the detail everywhere.
 void ComposedMap::FadeDetail(const Composition& composition, TaskRunner& runner) {
     shown_detail_ = composition.detail;
@@ -107,45 +101,85 @@ void ComposedMap::FadeDetail(const Composition& composition, TaskRunner& runner)
 
 void ComposedMap::LocateFadedRow(const Composition& composition, int row) {
     constexpr float kNoChange_px = 0.02F;
-    for (int col = 0; col < cols_; ++col) {
-        const Vector2f hidden = composition.detail.at(row, col) - shown_detail_.at(row, col);
-        if (hidden.cwiseAbs().maxCoeff() < kNoChange_px) continue;
-        whole_.at(row, col) -= hidden;
-        LocateCorner(composition, row, col);
-    }
+    const auto half = [&](int first, int last) {
+        Columns changed{cols_, -1};
+        for (int col = first; col <= last; ++col) {
+            const Vector2f hidden = composition.detail.at(row, col) - shown_detail_.at(row, col);
+            if (hidden.cwiseAbs().maxCoeff() < kNoChange_px) continue;
+            whole_.at(row, col) -= hidden;
+            changed = {std::min(changed.first, col), col};
+        }
+        Locate(composition, row, changed);
+    };
+    half(0, cols_ / 2 - 1);
+    half(cols_ / 2, cols_ - 1);
 }
 
-/// For both units: where each reads the corner, and its cameras there.
-void ComposedMap::LocateCorner(const Composition& composition, int row, int col) {
-    const std::size_t at = At(row, col);
-    const Vector2d corner_px = whole_.Pixel(row, col);
-    const Vector2d e = whole_.at(row, col).cast<double>();
+void ComposedMap::Locate(const Composition& composition, int row, const Columns& columns) {
+    PixelRun view;
+    SightRuns sights;
     for (const Unit unit : kUnits) {
         if (!units_[unit]) continue;
+        ForgetSights(unit, row, columns);
         const double moves = unit == Unit::kTractor ? -composition.kappa : 1 - composition.kappa;
-        UnitGeometry::Sights sights;
-        units_[unit]->table.See(units_[unit]->on_view.At(corner_px + moves * e), present_[unit],
-                                sights);
-        TakeSights(unit, at, sights);
+        for (int first = columns.first; first <= columns.last; first += PixelRun::kMost) {
+            view.count = std::min(PixelRun::kMost, columns.last + 1 - first);
+            for (int i = 0; i < view.count; ++i) {
+                const Vector2d canvas_px =
+                    whole_.Pixel(row, first + i) + moves * whole_.at(row, first + i).cast<double>();
+                const Vector2f view_px = units_[unit]->on_view.At(canvas_px).cast<float>();
+                view.x_px[static_cast<std::size_t>(i)] = view_px.x();
+                view.y_px[static_cast<std::size_t>(i)] = view_px.y();
+            }
+            units_[unit]->table.See(view, present_[unit], sights);
+            TakeSights(unit, row, first, sights);
+        }
     }
 }
 
-void ComposedMap::TakeSights(Unit unit, std::size_t at, const UnitGeometry::Sights& sights) {
-    const UnitGeometry& geometry = units_[unit]->geometry;
-    Source* sources = sources_.data() + first_source_[unit];
-    for (int i = 0; i < geometry.cameras(); ++i) {
-        sources[i].corners[at].sees = false;
-        sources[i].share[at] = 0;
+void ComposedMap::ForgetSights(Unit unit, int row, const Columns& columns) {
+    if (columns.last < columns.first) return;
+    const auto begin = static_cast<std::ptrdiff_t>(At(row, columns.first));
+    const auto end = static_cast<std::ptrdiff_t>(At(row, columns.last)) + 1;
+    std::fill(covered_[unit].begin() + begin, covered_[unit].begin() + end, std::uint8_t{0});
+    for (Source& source : sources_) {
+        if (source.unit != unit) continue;
+        Columns& seen = source.seen[static_cast<std::size_t>(row)];
+        const int first = std::max(seen.first, columns.first);
+        const int last = std::min(seen.last, columns.last);
+        for (int col = first; col <= last; ++col) {
+            source.corners[At(row, col)] = {};
+            source.share[At(row, col)] = 0;
+        }
+        if (first <= seen.first && seen.last <= last) seen = {cols_, -1};
     }
-    covered_[unit][at] = 0;
-    for (const CameraSight& sight : sights) {
-        Source& source = sources[sight.camera];
-        source.corners[at] = {static_cast<float>(sight.pixel.x()),
-                              static_cast<float>(sight.pixel.y()), 0, true};
-        source.share[at] = static_cast<float>(sight.weight);
-        if (!Inside(geometry, sight.camera, sight.pixel)) continue;
-        if (sight.weight > 0) covered_[unit][at] = 1;
-        if (!present_[unit][static_cast<std::size_t>(sight.camera)]) source.share[at] = kAbsent;
+}
+
+void ComposedMap::TakeSights(Unit unit, int row, int first_col, SightRuns& sights) {
+    const UnitGeometry& geometry = units_[unit]->geometry;
+    PixelRun::Of<float> most{};  // share of the main camera
+    for (const CameraSightRun& run : sights.cameras()) {
+        Source& source = sources_[static_cast<std::size_t>(first_source_[unit] + run.camera)];
+        const bool present = present_[unit][static_cast<std::size_t>(run.camera)];
+        const auto right_px = static_cast<float>(geometry.camera_width_px(run.camera) - 1);
+        const auto bottom_px = static_cast<float>(geometry.camera_height_px(run.camera) - 1);
+        Columns& seen = source.seen[static_cast<std::size_t>(row)];
+        seen.first = std::min(seen.first, first_col + run.first);
+        seen.last = std::max(seen.last, first_col + run.end - 1);
+        for (auto i = static_cast<std::size_t>(run.first); i < static_cast<std::size_t>(run.end);
+             ++i) {
+            if (run.share[i] < 0) continue;
+            const std::size_t at = At(row, first_col) + i;
+            const float x = run.x_px[i];
+            const float y = run.y_px[i];
+            source.corners[at] = {x, y, 0, true};
+            const bool inside = x >= 0 && y >= 0 && x <= right_px && y <= bottom_px;
+            source.share[at] = inside && !present ? kAbsent : run.share[i];
+            if (!inside || run.share[i] <= most[i]) continue;
+            most[i] = run.share[i];
+            covered_[unit][at] = 1;
+            main_camera_[unit][at] = static_cast<std::int8_t>(run.camera);
+        }
     }
 }
 
@@ -184,15 +218,13 @@ void ComposedMap::CompareUnits(const Composition& composition, const RigPictures
     }
 }
 
-/// From the camera that has the largest share; the unit covers the corner.
+/// From the main camera; the unit covers the corner.
 GreyPatch ComposedMap::PatchOf(const RigPictures& pictures, Unit unit, std::size_t at) const {
-    const Source* best = &sources_[static_cast<std::size_t>(first_source_[unit])];
-    for (const Source& source : sources_) {
-        if (source.unit == unit && source.share[at] > best->share[at]) best = &source;
-    }
-    const auto camera = static_cast<std::size_t>(best->camera);
-    return ReadGreyPatch(pictures.frames[unit][camera], pictures.gains[unit][camera],
-                         best->corners[at].x, best->corners[at].y);
+    const auto camera = static_cast<std::size_t>(main_camera_[unit][at]);
+    const Corner& corner =
+        sources_[static_cast<std::size_t>(first_source_[unit]) + camera].corners[at];
+    return ReadGreyPatch(pictures.frames[unit][camera], pictures.gains[unit][camera], corner.x,
+                         corner.y);
 }
 
 float ComposedMap::DoubtAt(const Composition& composition, int row, int col) const {
@@ -231,6 +263,8 @@ void ComposedMap::WeightRow(int row) {
             }
         }
         for (Source& source : sources_) {
+            const Columns& seen = source.seen[static_cast<std::size_t>(row)];
+            if (col < seen.first || col > seen.last) continue;
             source.corners[at].weight = share[source.unit] * source.share[at];
             if (source.corners[at].weight <= 0) continue;
             Columns& used = source.used[static_cast<std::size_t>(row)];

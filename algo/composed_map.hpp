@@ -82,6 +82,7 @@ class ComposedMap {
         int camera;  ///< of the unit
         std::vector<Corner> corners;
         std::vector<float> share;   ///< in the unit's view
+        std::vector<Columns> seen;  ///< of each row; elsewhere the camera has no pixel
         std::vector<Columns> used;  ///< of each row
     };
 
@@ -95,10 +96,11 @@ class ComposedMap {
     };
 
     void BuildFor(const Composition& composition, const RigPictures* pictures, TaskRunner& runner);
-    void LocateRow(const Composition& composition, int row);
     void MeasureDiscrepancy(const Composition& composition, int row);
-    void LocateCorner(const Composition& composition, int row, int col);
-    void TakeSights(Unit unit, std::size_t at, const UnitGeometry::Sights& sights);
+    /// For both units: where each reads these corners of a row, and its cameras there.
+    void Locate(const Composition& composition, int row, const Columns& columns);
+    void ForgetSights(Unit unit, int row, const Columns& columns);
+    void TakeSights(Unit unit, int row, int first_col, SightRuns& sights);
     void FadeDetail(const Composition& composition, TaskRunner& runner);
     void LocateFadedRow(const Composition& composition, int row);
     void UpdateSeams(const Composition& composition, const RigPictures* pictures,
@@ -124,6 +126,7 @@ class ComposedMap {
     SeamCost seam_cost_;
     CornerField shown_detail_;
     UnitSeams::Coverage covered_;
+    PerUnit<std::vector<std::int8_t>> main_camera_;  ///< largest share; of covered corners
     PerUnit<CameraMask> present_;
     std::optional<Unit> selected_;
 };
