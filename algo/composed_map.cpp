@@ -120,67 +120,86 @@ void ComposedMap::Locate(const Composition& composition, int row, const Columns&
     SightRuns sights;
     for (const Unit unit : kUnits) {
         if (!units_[unit]) continue;
-        ForgetSights(unit, row, columns);
         const double moves = unit == Unit::kTractor ? -composition.kappa : 1 - composition.kappa;
         for (int first = columns.first; first <= columns.last; first += PixelRun::kMost) {
             view.count = std::min(PixelRun::kMost, columns.last + 1 - first);
-            for (int i = 0; i < view.count; ++i) {
-                const Vector2d canvas_px =
-                    whole_.Pixel(row, first + i) + moves * whole_.at(row, first + i).cast<double>();
-                const Vector2f view_px = units_[unit]->on_view.At(canvas_px).cast<float>();
-                view.x_px[static_cast<std::size_t>(i)] = view_px.x();
-                view.y_px[static_cast<std::size_t>(i)] = view_px.y();
-            }
+            PlaceOnView(*units_[unit], moves, row, first, view);
             units_[unit]->table.See(view, present_[unit], sights);
-            TakeSights(unit, row, first, sights);
+            TakeSights(unit, row, first, view.count, sights);
         }
     }
 }
 
-void ComposedMap::ForgetSights(Unit unit, int row, const Columns& columns) {
-    if (columns.last < columns.first) return;
-    const auto begin = static_cast<std::ptrdiff_t>(At(row, columns.first));
-    const auto end = static_cast<std::ptrdiff_t>(At(row, columns.last)) + 1;
-    std::fill(covered_[unit].begin() + begin, covered_[unit].begin() + end, std::uint8_t{0});
-    for (Source& source : sources_) {
-        if (source.unit != unit) continue;
-        Columns& seen = source.seen[static_cast<std::size_t>(row)];
-        const int first = std::max(seen.first, columns.first);
-        const int last = std::min(seen.last, columns.last);
-        for (int col = first; col <= last; ++col) {
-            source.corners[At(row, col)] = {};
-            source.share[At(row, col)] = 0;
-        }
-        if (first <= seen.first && seen.last <= last) seen = {cols_, -1};
+void ComposedMap::PlaceOnView(const UnitMap& unit, double moves, int row, int first_col,
+                              PixelRun& view) const {
+    for (int i = 0; i < view.count; ++i) {
+        const Vector2f& e = whole_.at(row, first_col + i);
+        const Vector2d view_px =
+            unit.on_view.At(whole_.Pixel(row, first_col + i) + moves * e.cast<double>());
+        view.x_px[static_cast<std::size_t>(i)] = static_cast<float>(view_px.x());
+        view.y_px[static_cast<std::size_t>(i)] = static_cast<float>(view_px.y());
     }
 }
 
-void ComposedMap::TakeSights(Unit unit, int row, int first_col, SightRuns& sights) {
-    const UnitGeometry& geometry = units_[unit]->geometry;
-    PixelRun::Of<float> most{};  // share of the main camera
+void ComposedMap::TakeSights(Unit unit, int row, int first_col, int count, SightRuns& sights) {
+    const std::size_t first = At(row, first_col);
+    std::fill_n(covered_[unit].begin() + static_cast<std::ptrdiff_t>(first), count,
+                std::uint8_t{0});
+    std::array<Columns, kMaxCameras> taken;
+    Shares most{};
     for (const CameraSightRun& run : sights.cameras()) {
-        Source& source = sources_[static_cast<std::size_t>(first_source_[unit] + run.camera)];
-        const bool present = present_[unit][static_cast<std::size_t>(run.camera)];
-        const auto right_px = static_cast<float>(geometry.camera_width_px(run.camera) - 1);
-        const auto bottom_px = static_cast<float>(geometry.camera_height_px(run.camera) - 1);
-        Columns& seen = source.seen[static_cast<std::size_t>(row)];
-        seen.first = std::min(seen.first, first_col + run.first);
-        seen.last = std::max(seen.last, first_col + run.end - 1);
-        for (auto i = static_cast<std::size_t>(run.first); i < static_cast<std::size_t>(run.end);
-             ++i) {
-            if (run.share[i] < 0) continue;
-            const std::size_t at = At(row, first_col) + i;
-            const float x = run.x_px[i];
-            const float y = run.y_px[i];
-            source.corners[at] = {x, y, 0, true};
-            const bool inside = x >= 0 && y >= 0 && x <= right_px && y <= bottom_px;
-            source.share[at] = inside && !present ? kAbsent : run.share[i];
-            if (!inside || run.share[i] <= most[i]) continue;
-            most[i] = run.share[i];
-            covered_[unit][at] = 1;
-            main_camera_[unit][at] = static_cast<std::int8_t>(run.camera);
-        }
+        taken[static_cast<std::size_t>(run.camera)] = {first_col + run.first,
+                                                       first_col + run.end - 1};
+        TakeSights(unit, first, run, most);
     }
+    for (int i = 0; i < units_[unit]->geometry.cameras(); ++i) {
+        sources_[static_cast<std::size_t>(first_source_[unit] + i)].Replace(
+            At(row, 0), {first_col, first_col + count - 1}, taken[static_cast<std::size_t>(i)],
+            row);
+    }
+}
+
+void ComposedMap::TakeSights(Unit unit, std::size_t first, const CameraSightRun& sights,
+                             Shares& most) {
+    const UnitGeometry& geometry = units_[unit]->geometry;
+    const bool present = present_[unit][static_cast<std::size_t>(sights.camera)];
+    const auto right_px = static_cast<float>(geometry.camera_width_px(sights.camera) - 1);
+    const auto bottom_px = static_cast<float>(geometry.camera_height_px(sights.camera) - 1);
+    Source& source = sources_[static_cast<std::size_t>(first_source_[unit] + sights.camera)];
+    for (auto i = static_cast<std::size_t>(sights.first); i < static_cast<std::size_t>(sights.end);
+         ++i) {
+        const std::size_t at = first + i;
+        const float x = sights.x_px[i];
+        const float y = sights.y_px[i];
+        const float share = std::max(0.0F, sights.share[i]);
+        const bool sees = sights.share[i] >= 0;
+        const bool inside = sees && x >= 0 && y >= 0 && x <= right_px && y <= bottom_px;
+        source.corners[at] = {sees ? x : 0, sees ? y : 0, 0, sees};
+        source.share[at] = inside && !present ? kAbsent : share;
+        if (!inside || share <= most[i]) continue;
+        most[i] = share;
+        covered_[unit][at] = 1;
+        main_camera_[unit][at] = static_cast<std::int8_t>(sights.camera);
+    }
+}
+
+/// Forgets what was seen in other columns than those just taken, of those looked at.
+void ComposedMap::Source::Replace(std::size_t row_at, const Columns& looked_at,
+                                  const Columns& taken, int row) {
+    Columns& old = seen[static_cast<std::size_t>(row)];
+    const auto forget = [&](int first, int last) {
+        for (int col = std::max(first, old.first); col <= std::min(last, old.last); ++col) {
+            corners[row_at + static_cast<std::size_t>(col)] = {};
+            share[row_at + static_cast<std::size_t>(col)] = 0;
+        }
+    };
+    if (taken.last < taken.first) {
+        forget(looked_at.first, looked_at.last);
+        return;
+    }
+    forget(looked_at.first, taken.first - 1);
+    forget(taken.last + 1, looked_at.last);
+    old = {std::min(old.first, taken.first), std::max(old.last, taken.last)};
 }
 
 void ComposedMap::UpdateSeams(const Composition& composition, const RigPictures* pictures,
@@ -203,11 +222,13 @@ void ComposedMap::UpdateSeams(const Composition& composition, const RigPictures*
 
 void ComposedMap::CompareUnits(const Composition& composition, const RigPictures& pictures,
                                int row) {
+    constexpr int kAhead = 8;  // corners
     for (const Overlap overlap : kOverlaps) {
         const SeamPath::Range& range = seams_.overlap(overlap);
         for (int col = range.first; col <= range.last; ++col) {
             const std::size_t at = At(row, col);
-            if (covered_[Unit::kTractor][at] == 0 || covered_[Unit::kTrailer][at] == 0) {
+            if (col + kAhead <= range.last) FetchPatches(pictures, at + kAhead);
+            if (!SeenByBoth(at)) {
                 seam_cost_.ObserveOne(at);
                 continue;
             }
@@ -218,11 +239,19 @@ void ComposedMap::CompareUnits(const Composition& composition, const RigPictures
     }
 }
 
+void ComposedMap::FetchPatches(const RigPictures& pictures, std::size_t at) const {
+    if (!SeenByBoth(at)) return;
+    for (const Unit unit : kUnits) {
+        const Corner& corner = MainCorner(unit, at);
+        FetchGreyPatch(pictures.frames[unit][static_cast<std::size_t>(main_camera_[unit][at])],
+                       corner.x, corner.y);
+    }
+}
+
 /// From the main camera; the unit covers the corner.
 GreyPatch ComposedMap::PatchOf(const RigPictures& pictures, Unit unit, std::size_t at) const {
     const auto camera = static_cast<std::size_t>(main_camera_[unit][at]);
-    const Corner& corner =
-        sources_[static_cast<std::size_t>(first_source_[unit]) + camera].corners[at];
+    const Corner& corner = MainCorner(unit, at);
     return ReadGreyPatch(pictures.frames[unit][camera], pictures.gains[unit][camera], corner.x,
                          corner.y);
 }

@@ -77,7 +77,10 @@ class ComposedMap {
     }
 
  private:
+    using Shares = PixelRun::Of<float>;
     struct Source {
+        void Replace(std::size_t row_at, const Columns& looked_at, const Columns& taken, int row);
+
         Unit unit;
         int camera;  ///< of the unit
         std::vector<Corner> corners;
@@ -99,13 +102,23 @@ class ComposedMap {
     void MeasureDiscrepancy(const Composition& composition, int row);
     /// For both units: where each reads these corners of a row, and its cameras there.
     void Locate(const Composition& composition, int row, const Columns& columns);
-    void ForgetSights(Unit unit, int row, const Columns& columns);
-    void TakeSights(Unit unit, int row, int first_col, SightRuns& sights);
+    void PlaceOnView(const UnitMap& unit, double moves, int row, int first_col,
+                     PixelRun& view) const;
+    void TakeSights(Unit unit, int row, int first_col, int count, SightRuns& sights);
+    void TakeSights(Unit unit, std::size_t first, const CameraSightRun& sights, Shares& most);
     void FadeDetail(const Composition& composition, TaskRunner& runner);
     void LocateFadedRow(const Composition& composition, int row);
     void UpdateSeams(const Composition& composition, const RigPictures* pictures,
                      TaskRunner& runner);
     void CompareUnits(const Composition& composition, const RigPictures& pictures, int row);
+    void FetchPatches(const RigPictures& pictures, std::size_t at) const;
+    [[nodiscard]] bool SeenByBoth(std::size_t at) const {
+        return covered_[Unit::kTractor][at] != 0 && covered_[Unit::kTrailer][at] != 0;
+    }
+    [[nodiscard]] const Corner& MainCorner(Unit unit, std::size_t at) const {
+        return sources_[static_cast<std::size_t>(first_source_[unit] + main_camera_[unit][at])]
+            .corners[at];
+    }
     [[nodiscard]] GreyPatch PatchOf(const RigPictures& pictures, Unit unit, std::size_t at) const;
     [[nodiscard]] float DoubtAt(const Composition& composition, int row, int col) const;
     [[nodiscard]] float BendAt(const Composition& composition, int row, int col) const;

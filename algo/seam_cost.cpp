@@ -35,17 +35,32 @@ struct UyvyLuma {
     }
 };
 
+/// Top left pixel of a patch.
+struct PatchPlace {
+    PatchPlace(const CameraFrame& frame, float x, float y)
+        : x0(std::clamp(static_cast<int>(x) - kSide / 2, 0, frame.width_px - kSide)),
+          y0(std::clamp(static_cast<int>(y) - kSide / 2, 0, frame.height_px - kSide)) {}
+
+    /// First byte of one of its rows.
+    [[nodiscard]] const std::uint8_t* Row(const CameraFrame& frame, int step_bytes, int r) const {
+        return frame.luma + x0 * step_bytes +
+               static_cast<std::ptrdiff_t>(y0 + r) * frame.luma_stride_bytes;
+    }
+
+    int x0;
+    int y0;
+};
+
 template <typename Luma>
-Sums SumCells(const CameraFrame& frame, int x0, int y0) {
+Sums SumCells(const CameraFrame& frame, const PatchPlace& place) {
     static_assert(GreyPatch::kCells == 2 && kSide == cv::v_uint16x8::nlanes);
     Sums sum{};
-    for (std::size_t cells = 0; cells < sum.size(); cells += GreyPatch::kCells) {
+    for (int row = 0; row < GreyPatch::kCells; ++row) {
         cv::v_uint16x8 columns = cv::v_setzero_u16();
-        for (int r = 0; r < GreyPatch::kCellPx; ++r, ++y0) {
-            columns =
-                columns + Luma::Read(frame.luma + x0 * Luma::kStep +
-                                     static_cast<std::ptrdiff_t>(y0) * frame.luma_stride_bytes);
+        for (int r = 0; r < GreyPatch::kCellPx; ++r) {
+            columns = columns + Luma::Read(place.Row(frame, Luma::kStep, row * GreyPatch::kCellPx + r));
         }
+        const auto cells = static_cast<std::size_t>(row * GreyPatch::kCells);
         cv::v_uint32x4 left;
         cv::v_uint32x4 right;
         cv::v_expand(columns, left, right);
@@ -55,28 +70,32 @@ Sums SumCells(const CameraFrame& frame, int x0, int y0) {
     return sum;
 }
 
-Sums SumCells(const CameraFrame& frame, int x0, int y0) {
+Sums SumCells(const CameraFrame& frame, const PatchPlace& place) {
     switch (frame.layout) {
         case PixelLayout::kUyvy:
-            return SumCells<UyvyLuma>(frame, x0, y0);
+            return SumCells<UyvyLuma>(frame, place);
         case PixelLayout::kYuyv:
-            return SumCells<YuyvLuma>(frame, x0, y0);
+            return SumCells<YuyvLuma>(frame, place);
         default:
-            return SumCells<PlainLuma>(frame, x0, y0);
+            return SumCells<PlainLuma>(frame, place);
     }
 }
 
 }  // namespace
 
 GreyPatch ReadGreyPatch(const CameraFrame& frame, float gain, float x, float y) {
-    const int x0 = std::clamp(static_cast<int>(x) - kSide / 2, 0, frame.width_px - kSide);
-    const int y0 = std::clamp(static_cast<int>(y) - kSide / 2, 0, frame.height_px - kSide);
-    const Sums sum = SumCells(frame, x0, y0);
+    const Sums sum = SumCells(frame, {frame, x, y});
     GreyPatch patch;
     constexpr float kPixels = GreyPatch::kCellPx * GreyPatch::kCellPx;
     for (std::size_t i = 0; i < sum.size(); ++i)
         patch.cell[i] = gain * FullLuma(frame.range, static_cast<float>(sum[i]) / kPixels);
     return patch;
+}
+
+void FetchGreyPatch(const CameraFrame& frame, float x, float y) {
+    const PatchPlace place(frame, x, y);
+    for (int r = 0; r < kSide; ++r)
+        __builtin_prefetch(place.Row(frame, frame.is_packed() ? 2 : 1, r));
 }
 
 SeamCost::SeamCost(int corners, const SeamCostOptions& options)
