@@ -28,6 +28,7 @@ ComposedMap::ComposedMap(const Projection& canvas,
                          const SeamOptions& seam)
     : canvas_(canvas),
       canvas_mesh_(canvas),
+      coarse_(canvas, Vector2f::Zero()),
       whole_(canvas, Vector2f::Zero()),
       rows_(whole_.rows()),
       cols_(whole_.cols()),
@@ -83,10 +84,10 @@ void ComposedMap::BuildFor(const Composition& composition, const RigPictures* pi
 }
 
 void ComposedMap::MeasureDiscrepancy(const Composition& composition, int row) {
+    canvas_mesh_.SampleRow(composition.discrepancy, row, coarse_);
     for (int col = 0; col < cols_; ++col) {
-        Vector2f& e = whole_.at(row, col);
-        e = Sample(canvas_mesh_, composition.discrepancy, whole_.Pixel(row, col)).cast<float>();
-        if (!composition.detail.empty()) e += composition.detail.at(row, col);
+        whole_.at(row, col) = coarse_.at(row, col);
+        if (!composition.detail.empty()) whole_.at(row, col) += composition.detail.at(row, col);
     }
 }
 
@@ -94,7 +95,7 @@ void ComposedMap::MeasureDiscrepancy(const Composition& composition, int row) {
 void ComposedMap::FadeDetail(const Composition& composition, TaskRunner& runner) {
     shown_detail_ = composition.detail;
     if (shown_detail_.empty() || !units_[Unit::kTrailer]) return;
-    FadeFromSeams(canvas_mesh_, composition.discrepancy, composition.detail, seams_,
+    FadeFromSeams(coarse_, composition.detail, seams_,
                   ShownDetailOptions(canvas_, composition.kappa), runner, shown_detail_);
     runner.Run(rows_, [&](int row) { LocateFadedRow(composition, row); });
 }
@@ -276,9 +277,20 @@ float ComposedMap::BendAt(const Composition& composition, int row, int col) cons
 }
 
 void ComposedMap::WeightRow(int row) {
-    const bool two = units_[Unit::kTrailer] != nullptr;
     for (Source& source : sources_) source.used[static_cast<std::size_t>(row)] = {cols_, -1};
-    for (int col = 0; col < cols_; ++col) {
+    PerUnit<Shares> shares;
+    for (int first = 0; first < cols_; first += PixelRun::kMost) {
+        const Columns columns{first, std::min(first + PixelRun::kMost, cols_) - 1};
+        ShareBetweenUnits(row, columns, shares);
+        for (Source& source : sources_) source.Weight(row, At(row, 0), columns, shares);
+    }
+}
+
+/// What each unit is to show of some columns of a row.
+void ComposedMap::ShareBetweenUnits(int row, const Columns& columns,
+                                    PerUnit<Shares>& shares) const {
+    const bool two = units_[Unit::kTrailer] != nullptr;
+    for (int col = columns.first; col <= columns.last; ++col) {
         const std::size_t at = At(row, col);
         const auto tractor =
             static_cast<float>(two ? seams_.TractorShare(row, whole_.Pixel(row, col).x()) : 1.0);
@@ -291,14 +303,22 @@ void ComposedMap::WeightRow(int row) {
                 if (covered_[Other(unit)][at] == 0) share[unit] = std::max(share[unit], kFiller);
             }
         }
-        for (Source& source : sources_) {
-            const Columns& seen = source.seen[static_cast<std::size_t>(row)];
-            if (col < seen.first || col > seen.last) continue;
-            source.corners[at].weight = share[source.unit] * source.share[at];
-            if (source.corners[at].weight <= 0) continue;
-            Columns& used = source.used[static_cast<std::size_t>(row)];
-            used = {std::min(used.first, col), col};
-        }
+        const auto i = static_cast<std::size_t>(col - columns.first);
+        for (const Unit unit : kUnits) shares[unit][i] = share[unit];
+    }
+}
+
+void ComposedMap::Source::Weight(int row, std::size_t row_at, const Columns& columns,
+                                 const PerUnit<Shares>& shares) {
+    const Columns& looked_at = seen[static_cast<std::size_t>(row)];
+    Columns& weighted = used[static_cast<std::size_t>(row)];
+    const int last = std::min(columns.last, looked_at.last);
+    for (int col = std::max(columns.first, looked_at.first); col <= last; ++col) {
+        const std::size_t at = row_at + static_cast<std::size_t>(col);
+        const float weight =
+            shares[unit][static_cast<std::size_t>(col - columns.first)] * share[at];
+        corners[at].weight = weight;
+        if (weight > 0) weighted = {std::min(weighted.first, col), col};
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "algo/camera_frame.hpp"
 #include "algo/composition.hpp"
+#include "algo/corner_mesh.hpp"
 #include "algo/picture_map.hpp"
 #include "algo/seam_cost.hpp"
 #include "algo/sight_table.hpp"
@@ -80,6 +81,9 @@ class ComposedMap {
     using Shares = PixelRun::Of<float>;
     struct Source {
         void Replace(std::size_t row_at, const Columns& looked_at, const Columns& taken, int row);
+        /// `shares`: what the units show of the columns.
+        void Weight(int row, std::size_t row_at, const Columns& columns,
+                    const PerUnit<Shares>& shares);
 
         Unit unit;
         int camera;  ///< of the unit
@@ -123,15 +127,17 @@ class ComposedMap {
     [[nodiscard]] float DoubtAt(const Composition& composition, int row, int col) const;
     [[nodiscard]] float BendAt(const Composition& composition, int row, int col) const;
     void WeightRow(int row);
+    void ShareBetweenUnits(int row, const Columns& columns, PerUnit<Shares>& shares) const;
     [[nodiscard]] std::size_t At(int row, int col) const {
         return static_cast<std::size_t>(row * cols_ + col);
     }
 
     Projection canvas_;
-    Mesh canvas_mesh_;
+    CornerMesh canvas_mesh_;
     PerUnit<std::unique_ptr<UnitMap>> units_;
-    CornerField whole_;  // discrepancy with the detail as it is shown
-    int rows_;           // of corners
+    CornerField coarse_;  // discrepancy without the detail
+    CornerField whole_;   // discrepancy with the detail as it is shown
+    int rows_;            // of corners
     int cols_;
     std::vector<Source> sources_;
     PerUnit<int> first_source_;
