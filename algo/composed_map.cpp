@@ -44,10 +44,9 @@ ComposedMap::ComposedMap(const Projection& canvas,
         if (!geometry[unit]) continue;
         units_[unit] = std::make_unique<UnitMap>(canvas, *geometry[unit]);
         for (int i = 0; i < geometry[unit]->cameras(); ++i) {
-            sources_.push_back(
-                {unit, i, std::vector<Corner>(corners), std::vector<float>(corners),
-                 std::vector<Columns>(static_cast<std::size_t>(rows_), Columns{cols_, -1}),
-                 std::vector<Columns>(static_cast<std::size_t>(rows_))});
+            sources_.push_back({unit, i, std::vector<Corner>(corners), std::vector<float>(corners),
+                                std::vector<Columns>(static_cast<std::size_t>(rows_), Columns{cols_, -1}),
+                                std::vector<Columns>(static_cast<std::size_t>(rows_))});
         }
     }
 }
@@ -155,8 +154,7 @@ void ComposedMap::TakeSights(Unit unit, int row, int first_col, int count, Sight
     }
     for (int i = 0; i < units_[unit]->geometry.cameras(); ++i) {
         sources_[static_cast<std::size_t>(first_source_[unit] + i)].Replace(
-            At(row, 0), {first_col, first_col + count - 1}, taken[static_cast<std::size_t>(i)],
-            row);
+            At(row, 0), {first_col, first_col + count - 1}, taken[static_cast<std::size_t>(i)], row);
     }
 }
 
@@ -315,8 +313,7 @@ void ComposedMap::Source::Weight(int row, std::size_t row_at, const Columns& col
     const int last = std::min(columns.last, looked_at.last);
     for (int col = std::max(columns.first, looked_at.first); col <= last; ++col) {
         const std::size_t at = row_at + static_cast<std::size_t>(col);
-        const float weight =
-            shares[unit][static_cast<std::size_t>(col - columns.first)] * share[at];
+        const float weight = shares[unit][static_cast<std::size_t>(col - columns.first)] * share[at];
         corners[at].weight = weight;
         if (weight > 0) weighted = {std::min(weighted.first, col), col};
     }
