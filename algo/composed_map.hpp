@@ -5,6 +5,7 @@
 
 #include "algo/camera_frame.hpp"
 #include "algo/composition.hpp"
+#include "algo/corner_mesh.hpp"
 #include "algo/picture_map.hpp"
 #include "algo/seam_cost.hpp"
 #include "algo/sight_table.hpp"
@@ -77,11 +78,18 @@ class ComposedMap {
     }
 
  private:
+    using Shares = PixelRun::Of<float>;
     struct Source {
+        void Replace(std::size_t row_at, const Columns& looked_at, const Columns& taken, int row);
+        /// `shares`: what the units show of the columns.
+        void Weight(int row, std::size_t row_at, const Columns& columns,
+                    const PerUnit<Shares>& shares);
+
         Unit unit;
         int camera;  ///< of the unit
         std::vector<Corner> corners;
         std::vector<float> share;   ///< in the unit's view
+        std::vector<Columns> seen;  ///< of each row; elsewhere the camera has no pixel
         std::vector<Columns> used;  ///< of each row
     };
 
@@ -95,28 +103,41 @@ class ComposedMap {
     };
 
     void BuildFor(const Composition& composition, const RigPictures* pictures, TaskRunner& runner);
-    void LocateRow(const Composition& composition, int row);
     void MeasureDiscrepancy(const Composition& composition, int row);
-    void LocateCorner(const Composition& composition, int row, int col);
-    void TakeSights(Unit unit, std::size_t at, const UnitGeometry::Sights& sights);
+    /// For both units: where each reads these corners of a row, and its cameras there.
+    void Locate(const Composition& composition, int row, const Columns& columns);
+    void PlaceOnView(const UnitMap& unit, double moves, int row, int first_col,
+                     PixelRun& view) const;
+    void TakeSights(Unit unit, int row, int first_col, int count, SightRuns& sights);
+    void TakeSights(Unit unit, std::size_t first, const CameraSightRun& sights, Shares& most);
     void FadeDetail(const Composition& composition, TaskRunner& runner);
     void LocateFadedRow(const Composition& composition, int row);
     void UpdateSeams(const Composition& composition, const RigPictures* pictures,
                      TaskRunner& runner);
     void CompareUnits(const Composition& composition, const RigPictures& pictures, int row);
+    void FetchPatches(const RigPictures& pictures, std::size_t at) const;
+    [[nodiscard]] bool SeenByBoth(std::size_t at) const {
+        return covered_[Unit::kTractor][at] != 0 && covered_[Unit::kTrailer][at] != 0;
+    }
+    [[nodiscard]] const Corner& MainCorner(Unit unit, std::size_t at) const {
+        return sources_[static_cast<std::size_t>(first_source_[unit] + main_camera_[unit][at])]
+            .corners[at];
+    }
     [[nodiscard]] GreyPatch PatchOf(const RigPictures& pictures, Unit unit, std::size_t at) const;
     [[nodiscard]] float DoubtAt(const Composition& composition, int row, int col) const;
     [[nodiscard]] float BendAt(const Composition& composition, int row, int col) const;
     void WeightRow(int row);
+    void ShareBetweenUnits(int row, const Columns& columns, PerUnit<Shares>& shares) const;
     [[nodiscard]] std::size_t At(int row, int col) const {
         return static_cast<std::size_t>(row * cols_ + col);
     }
 
     Projection canvas_;
-    Mesh canvas_mesh_;
+    CornerMesh canvas_mesh_;
     PerUnit<std::unique_ptr<UnitMap>> units_;
-    CornerField whole_;  // discrepancy with the detail as it is shown
-    int rows_;           // of corners
+    CornerField coarse_;  // discrepancy without the detail
+    CornerField whole_;   // discrepancy with the detail as it is shown
+    int rows_;            // of corners
     int cols_;
     std::vector<Source> sources_;
     PerUnit<int> first_source_;
@@ -124,6 +145,7 @@ class ComposedMap {
     SeamCost seam_cost_;
     CornerField shown_detail_;
     UnitSeams::Coverage covered_;
+    PerUnit<std::vector<std::int8_t>> main_camera_;  ///< largest share; of covered corners
     PerUnit<CameraMask> present_;
     std::optional<Unit> selected_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "algo/mesh.hpp"
@@ -23,7 +24,19 @@ class PictureMap {
 
     /// Pixel of the other picture; on a ring x may be off by whole turns. Outside the first one:
     /// extrapolated.
-    [[nodiscard]] Eigen::Vector2d At(const Eigen::Vector2d& pixel) const;
+    [[nodiscard]] Eigen::Vector2d At(const Eigen::Vector2d& pixel) const {
+        using Pair = Eigen::Array4f;  // a node and the one right of it
+        const double u = pixel.x() * nodes_per_px_;
+        const double v = pixel.y() * nodes_per_px_;
+        const int col = std::clamp(static_cast<int>(u), 0, cols_ - 2);
+        const int row = std::clamp(static_cast<int>(v), 0, rows_ - 2);
+        const auto s = static_cast<float>(u - col);
+        const auto t = static_cast<float>(v - row);
+        const float* top = nodes_[Index(row, col)].data();
+        const Pair above = Eigen::Map<const Pair>(top);
+        const Pair mixed = above + t * (Eigen::Map<const Pair>(top + 2 * cols_) - above);
+        return (mixed.head<2>() + s * (mixed.tail<2>() - mixed.head<2>())).matrix().cast<double>();
+    }
 
  private:
     void PlaceRow(const Eigen::Matrix3d& M_to_from, const VertexField* offset, int row);
@@ -41,7 +54,7 @@ class PictureMap {
     int rows_;
     int cols_;
     std::vector<Eigen::Vector3d> rays_;
-    std::vector<Eigen::Vector2d> nodes_;  // px, without a jump at the other picture's edge
+    std::vector<Eigen::Vector2f> nodes_;  // px, without a jump at the other picture's edge
 };
 
 }  // namespace hitchview::algo

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/hal/intrin.hpp>
 
 namespace hitchview::algo {
 
@@ -16,37 +17,85 @@ namespace {
 constexpr int kSide = GreyPatch::kCells * GreyPatch::kCellPx;
 using Sums = std::array<int, GreyPatch::kCells * GreyPatch::kCells>;
 
-/// Pixels lie kStep bytes apart.
-template <int kStep>
-Sums SumCells(const SamplePlane& luma, int x0, int y0) {
-    std::array<int, kSide> column{};
+// How to read the luma of kSide pixels from the first byte of the first one, whatever it means.
+struct PlainLuma {
+    static constexpr int kStep = 1;
+    static cv::v_uint16x8 Read(const std::uint8_t* row) { return cv::v_load_expand(row); }
+};
+struct YuyvLuma {
+    static constexpr int kStep = 2;
+    static cv::v_uint16x8 Read(const std::uint8_t* row) {
+        return cv::v_reinterpret_as_u16(cv::v_load(row)) & cv::v_setall_u16(255);
+    }
+};
+struct UyvyLuma {
+    static constexpr int kStep = 2;
+    static cv::v_uint16x8 Read(const std::uint8_t* row) {
+        return cv::v_shr<8>(cv::v_reinterpret_as_u16(cv::v_load(row)));
+    }
+};
+
+/// Top left pixel of a patch.
+struct PatchPlace {
+    PatchPlace(const CameraFrame& frame, float x, float y)
+        : x0(std::clamp(static_cast<int>(x) - kSide / 2, 0, frame.width_px - kSide)),
+          y0(std::clamp(static_cast<int>(y) - kSide / 2, 0, frame.height_px - kSide)) {}
+
+    /// First byte of one of its rows.
+    [[nodiscard]] const std::uint8_t* Row(const CameraFrame& frame, int step_bytes, int r) const {
+        return frame.luma + x0 * step_bytes +
+               static_cast<std::ptrdiff_t>(y0 + r) * frame.luma_stride_bytes;
+    }
+
+    int x0;
+    int y0;
+};
+
+template <typename Luma>
+Sums SumCells(const CameraFrame& frame, const PatchPlace& place) {
+    static_assert(GreyPatch::kCells == 2 && kSide == cv::v_uint16x8::nlanes);
     Sums sum{};
-    for (int cell_row = 0; cell_row < GreyPatch::kCells; ++cell_row) {
-        column.fill(0);
+    for (int row = 0; row < GreyPatch::kCells; ++row) {
+        cv::v_uint16x8 columns = cv::v_setzero_u16();
         for (int r = 0; r < GreyPatch::kCellPx; ++r) {
-            const std::uint8_t* row = luma.row(y0 + cell_row * GreyPatch::kCellPx + r) + x0 * kStep;
-            for (int c = 0; c < kSide; ++c) column[static_cast<std::size_t>(c)] += row[c * kStep];
+            columns = columns + Luma::Read(place.Row(frame, Luma::kStep, row * GreyPatch::kCellPx + r));
         }
-        for (int c = 0; c < kSide; ++c) {
-            const int cell = cell_row * GreyPatch::kCells + c / GreyPatch::kCellPx;
-            sum[static_cast<std::size_t>(cell)] += column[static_cast<std::size_t>(c)];
-        }
+        const auto cells = static_cast<std::size_t>(row * GreyPatch::kCells);
+        cv::v_uint32x4 left;
+        cv::v_uint32x4 right;
+        cv::v_expand(columns, left, right);
+        sum[cells] = static_cast<int>(cv::v_reduce_sum(left));
+        sum[cells + 1] = static_cast<int>(cv::v_reduce_sum(right));
     }
     return sum;
+}
+
+Sums SumCells(const CameraFrame& frame, const PatchPlace& place) {
+    switch (frame.layout) {
+        case PixelLayout::kUyvy:
+            return SumCells<UyvyLuma>(frame, place);
+        case PixelLayout::kYuyv:
+            return SumCells<YuyvLuma>(frame, place);
+        default:
+            return SumCells<PlainLuma>(frame, place);
+    }
 }
 
 }  // namespace
 
 GreyPatch ReadGreyPatch(const CameraFrame& frame, float gain, float x, float y) {
-    const int x0 = std::clamp(static_cast<int>(x) - kSide / 2, 0, frame.width_px - kSide);
-    const int y0 = std::clamp(static_cast<int>(y) - kSide / 2, 0, frame.height_px - kSide);
-    const SamplePlane luma = frame.LumaSamples();
-    const Sums sum = luma.step_bytes == 1 ? SumCells<1>(luma, x0, y0) : SumCells<2>(luma, x0, y0);
+    const Sums sum = SumCells(frame, {frame, x, y});
     GreyPatch patch;
     constexpr float kPixels = GreyPatch::kCellPx * GreyPatch::kCellPx;
     for (std::size_t i = 0; i < sum.size(); ++i)
         patch.cell[i] = gain * FullLuma(frame.range, static_cast<float>(sum[i]) / kPixels);
     return patch;
+}
+
+void FetchGreyPatch(const CameraFrame& frame, float x, float y) {
+    const PatchPlace place(frame, x, y);
+    for (int r = 0; r < kSide; ++r)
+        __builtin_prefetch(place.Row(frame, frame.is_packed() ? 2 : 1, r));
 }
 
 SeamCost::SeamCost(int corners, const SeamCostOptions& options)

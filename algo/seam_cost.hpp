@@ -20,6 +20,8 @@ struct GreyPatch {
 
 /// Round pixel (x, y) of a picture, moved inwards where it would reach beyond the edge.
 GreyPatch ReadGreyPatch(const CameraFrame& frame, float gain, float x, float y);
+/// Has the memory of a patch that is read soon brought near: patches lie far apart in a picture.
+void FetchGreyPatch(const CameraFrame& frame, float x, float y);
 
 struct SeamCostOptions {
     float follow = 0.35F;       ///< share of the newest difference

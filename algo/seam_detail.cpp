@@ -17,10 +17,9 @@ double ShareAt(double distance_px, const SeamDetailOptions& options) {
 
 class RowFader {
  public:
-    RowFader(const Mesh& mesh, const VertexField& discrepancy, const CornerField& detail,
-             const SeamDetailOptions& options, CornerField& shown)
-        : mesh_(mesh),
-          discrepancy_(discrepancy),
+    RowFader(const CornerField& coarse, const CornerField& detail, const SeamDetailOptions& options,
+             CornerField& shown)
+        : coarse_(coarse),
           detail_(detail),
           options_(options),
           limit_(Vector2f(static_cast<float>(options.stretch), static_cast<float>(options.tilt)) *
@@ -40,27 +39,21 @@ class RowFader {
  private:
     [[nodiscard]] Vector2f Wanted(int row, int col, double seam_px) const {
         const double distance_px = std::abs(detail_.Pixel(row, col).x() - seam_px);
+        if (distance_px >= options_.core_px + options_.fade_px) return Vector2f::Zero();
         return static_cast<float>(ShareAt(distance_px, options_)) * detail_.at(row, col);
-    }
-    [[nodiscard]] Vector2f Coarse(int row, int col) const {
-        return Sample(mesh_, discrepancy_, detail_.Pixel(row, col)).cast<float>();
     }
     /// From the corner at `start` to that at `end`, `away` at a time.
     void Walk(int row, int start, int end, int away, double seam_px) const {
-        Vector2f coarse = Coarse(row, start);
         for (int before = start; before != end; before += away) {
             const int col = before + away;
-            const Vector2f next = Coarse(row, col);
-            const Vector2f change = next - coarse;
+            const Vector2f change = coarse_.at(row, col) - coarse_.at(row, before);
             const Vector2f step = Wanted(row, col, seam_px) - shown_.at(row, before) + change;
             shown_.at(row, col) =
                 shown_.at(row, before) - change + step.cwiseMax(-limit_).cwiseMin(limit_);
-            coarse = next;
         }
     }
 
-    const Mesh& mesh_;
-    const VertexField& discrepancy_;
+    const CornerField& coarse_;
     const CornerField& detail_;
     const SeamDetailOptions& options_;
     Vector2f limit_;
@@ -69,10 +62,9 @@ class RowFader {
 
 }  // namespace
 
-void FadeFromSeams(const Mesh& mesh, const VertexField& discrepancy, const CornerField& detail,
-                   const UnitSeams& seams, const SeamDetailOptions& options, TaskRunner& runner,
-                   CornerField& shown) {
-    const RowFader fader(mesh, discrepancy, detail, options, shown);
+void FadeFromSeams(const CornerField& coarse, const CornerField& detail, const UnitSeams& seams,
+                   const SeamDetailOptions& options, TaskRunner& runner, CornerField& shown) {
+    const RowFader fader(coarse, detail, options, shown);
     const int half = detail.cols() / 2;
     runner.Run(detail.rows(), [&](int row) {
         fader.Fade(row, seams.path(Overlap::kLeft).x_px(row), 0, half - 1);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "algo/corner_grid.hpp"
-#include "algo/mesh.hpp"
 #include "algo/task_runner.hpp"
 #include "algo/unit_seams.hpp"
 
@@ -19,8 +18,8 @@ struct SeamDetailOptions {
 /// their shape. So the detail of the discrepancy fades out on both sides of each seam. Beginning at
 /// the seam, the whole discrepancy (mesh and detail) changes from corner to corner by so little
 /// that no unit's part of a row folds. Ring only.
-void FadeFromSeams(const Mesh& mesh, const VertexField& discrepancy, const CornerField& detail,
-                   const UnitSeams& seams, const SeamDetailOptions& options, TaskRunner& runner,
-                   CornerField& shown);
+/// `coarse`: what the mesh says of the discrepancy.
+void FadeFromSeams(const CornerField& coarse, const CornerField& detail, const UnitSeams& seams,
+                   const SeamDetailOptions& options, TaskRunner& runner, CornerField& shown);
 
 }  // namespace hitchview::algo

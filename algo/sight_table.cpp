@@ -1,7 +1,11 @@
 #include "algo/sight_table.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
+
+#include "algo/multiversion.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -10,9 +14,56 @@ using Eigen::Vector2d;
 
 /// How far a stabilised view may be tilted, so that more of it is seen above or below.
 constexpr double kTilt_rad = 0.2;
+/// Instead of a margin, which is not less than 0.
+constexpr float kNoShare = -1;
+constexpr float kNoPixel = -2;
+constexpr auto kBlendWidth = static_cast<float>(UnitGeometry::kBlendWidth);
+constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 
 int RowsOver(double length_px, double pitch_px) {
     return std::max(1, static_cast<int>(std::ceil(length_px / pitch_px)));
+}
+
+/// Into `share`: distance to the nearer side edge, as a share of the width; kNoShare where the
+/// picture cannot be shown, kNoPixel where there is no pixel.
+HV_MULTIVERSION
+void TakeMargins(float width_px, float height_px, bool present, CameraSightRun& run) {
+    const float per_px = 1 / width_px;
+    for (auto i = static_cast<std::size_t>(run.first); i < static_cast<std::size_t>(run.end); ++i) {
+        const float x = run.x_px[i];
+        const float y = run.y_px[i];
+        const float margin = std::min(x, width_px - 1 - x) * per_px;
+        const bool shows = present && margin >= 0 && y >= 0 && y <= height_px - 1;
+        const float share = shows ? margin : kNoShare;
+        run.share[i] = std::isnan(x) ? kNoPixel : share;
+    }
+}
+
+/// As UnitGeometry::ShareByMargins.
+HV_MULTIVERSION
+void ShareByMargins(SightRuns& sights) {
+    alignas(64) PixelRun::Of<float> best{};
+    alignas(64) PixelRun::Of<float> sum{};
+    for (const CameraSightRun& run : sights.cameras()) {
+        for (auto i = static_cast<std::size_t>(run.first); i < static_cast<std::size_t>(run.end);
+             ++i)
+            best[i] = std::max(best[i], run.share[i]);
+    }
+    for (CameraSightRun& run : sights.cameras()) {
+        for (auto i = static_cast<std::size_t>(run.first); i < static_cast<std::size_t>(run.end);
+             ++i) {
+            const float share = std::max(0.0F, run.share[i] - best[i] + kBlendWidth);
+            sum[i] += run.share[i] < 0 ? 0 : share;
+            run.share[i] = run.share[i] < 0 ? run.share[i] : share;
+        }
+    }
+    for (CameraSightRun& run : sights.cameras()) {
+        for (auto i = static_cast<std::size_t>(run.first); i < static_cast<std::size_t>(run.end);
+             ++i) {
+            const float share = run.share[i] / (sum[i] > 0 ? sum[i] : 1);
+            run.share[i] = run.share[i] == kNoShare ? 0 : run.share[i] == kNoPixel ? -1 : share;
+        }
+    }
 }
 
 }  // namespace
@@ -31,7 +82,8 @@ SightTable::SightTable(const UnitGeometry& geometry)
 void SightTable::Fill(const UnitGeometry& geometry) {
     const auto cameras = static_cast<std::size_t>(geometry.cameras());
     std::vector<std::vector<Node>> whole(
-        cameras, std::vector<Node>(static_cast<std::size_t>(rows_ * kCols)));
+        cameras,
+        std::vector<Node>(static_cast<std::size_t>(rows_ * kCols), Node::Constant(kUnseen)));
     const Projection& view = geometry.view();
     Vector2d pixel;
     for (int row = 0; row < rows_; ++row) {
@@ -40,23 +92,24 @@ void SightTable::Fill(const UnitGeometry& geometry) {
             const auto at = static_cast<std::size_t>(row * kCols + col);
             for (std::size_t i = 0; i < cameras; ++i) {
                 if (!geometry.Project(static_cast<int>(i), view.Ray(node), pixel)) continue;
-                whole[i][at] = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), true};
+                whole[i][at] = pixel.array().cast<float>();
             }
         }
     }
     cameras_.resize(cameras);
     for (std::size_t i = 0; i < cameras; ++i) {
-        cameras_[i].width_px = geometry.camera_width_px(static_cast<int>(i));
-        cameras_[i].height_px = geometry.camera_height_px(static_cast<int>(i));
+        cameras_[i].width_px = static_cast<float>(geometry.camera_width_px(static_cast<int>(i)));
+        cameras_[i].height_px = static_cast<float>(geometry.camera_height_px(static_cast<int>(i)));
         Crop(whole[i], cameras_[i]);
         for (int col = 0; col + 1 < cameras_[i].cols; ++col)
-            seeing_[static_cast<std::size_t>((cameras_[i].first + col) % kCols)].set(i);
+            seeing_[static_cast<std::size_t>((cameras_[i].first + col) % kCols)] |=
+                static_cast<std::uint8_t>(1U << i);
     }
 }
 
 bool SightTable::SeesColumn(const std::vector<Node>& whole, int col) const {
     for (int row = 0; row < rows_; ++row) {
-        if (whole[static_cast<std::size_t>(row * kCols + col)].sees) return true;
+        if (!whole[static_cast<std::size_t>(row * kCols + col)].hasNaN()) return true;
     }
     return false;
 }
@@ -81,41 +134,88 @@ void SightTable::Crop(const std::vector<Node>& whole, Camera& camera) const {
     }
 }
 
-void SightTable::See(const Vector2d& view_px, const CameraMask& present,
-                     UnitGeometry::Sights& sights) const {
-    sights.clear();
+HV_MULTIVERSION
+void SightTable::Place(const PixelRun& view, Places& places) const {
+    const auto nodes_per_px = static_cast<float>(1 / pitch_px_);
+    const auto edge_px = static_cast<float>(edge_px_);
+    const auto rows_to_edge = static_cast<float>(rows_to_edge_);
+    const auto last_row = static_cast<float>(rows_ - 1);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(view.count); ++i) {
+        const float u = view.x_px[i] * nodes_per_px;
+        const float turns = std::floor(u * (1.0F / kCols));
+        const float around = std::clamp(u - kCols * turns, 0.0F, kCols - 1e-3F);
+        const float v = (view.y_px[i] - edge_px) * nodes_per_px + rows_to_edge;
+        const float inside = std::clamp(v, 0.0F, last_row - 1);
+        places.col[i] = static_cast<std::int32_t>(around);
+        places.row[i] = static_cast<std::int32_t>(inside);
+        const float s = around - static_cast<float>(places.col[i]);
+        places.s[i] = v >= 0 && v < last_row ? s : kUnseen;
+        places.t[i] = v - static_cast<float>(places.row[i]);
+    }
+}
+
+void SightTable::FindCameras(const Places& places, int count, SightRuns& sights) const {
+    std::array<int, kMaxCameras> first;
+    std::array<int, kMaxCameras> end{};
+    first.fill(count);
+    for (int i = 0; i < count; ++i) {
+        const auto col = static_cast<std::size_t>(places.col[static_cast<std::size_t>(i)]);
+        for (unsigned rest = seeing_[col]; rest != 0; rest &= rest - 1) {
+            const auto camera = static_cast<std::size_t>(std::countr_zero(rest));
+            first[camera] = std::min(first[camera], i);
+            end[camera] = i + 1;
+        }
+    }
+    sights.count = 0;
+    for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
+        if (end[camera] == 0) continue;
+        CameraSightRun& run = sights.camera[static_cast<std::size_t>(sights.count++)];
+        run.camera = static_cast<int>(camera);
+        run.first = first[camera];
+        run.end = end[camera];
+    }
+}
+
+void SightTable::ReadPixels(const Places& places, CameraSightRun& sights) const {
+    using Pair = Eigen::Array4f;  // a node and the one right of it
+    const Camera& camera = cameras_[static_cast<std::size_t>(sights.camera)];
+    const float* nodes = camera.nodes.data()->data();
+    for (auto i = static_cast<std::size_t>(sights.first); i < static_cast<std::size_t>(sights.end);
+         ++i) {
+        const int right = places.col[i] - camera.first;
+        const int wanted = right + (right < 0 ? kCols : 0);
+        const int col = std::min(wanted, camera.cols - 2);
+        const float s = wanted == col ? places.s[i] : kUnseen;
+        const float* top = nodes + 2 * (places.row[i] * camera.cols + col);
+        const Pair above = Eigen::Map<const Pair>(top);
+        const Pair below = Eigen::Map<const Pair>(top + 2 * camera.cols);
+        const Pair mixed = above + places.t[i] * (below - above);
+        const Node pixel = mixed.head<2>() + s * (mixed.tail<2>() - mixed.head<2>());
+        sights.x_px[i] = pixel.x();
+        sights.y_px[i] = pixel.y();
+    }
+}
+
+void SightTable::See(const PixelRun& view, const CameraMask& present, SightRuns& sights) const {
     if (!ring_) {
-        sights.push_back({0, view_px, present[0] ? 1.0 : 0.0});
+        sights.count = 1;
+        CameraSightRun& run = sights.camera[0];
+        run.camera = run.first = 0;
+        run.end = view.count;
+        run.x_px = view.x_px;
+        run.y_px = view.y_px;
+        run.share.fill(present[0] ? 1.0F : 0.0F);
         return;
     }
-    double u = view_px.x() / pitch_px_;
-    if (u < 0 || u >= kCols) u -= kCols * std::floor(u / kCols);
-    const double v = (view_px.y() - edge_px_) / pitch_px_ + rows_to_edge_;
-    if (!(v >= 0 && v < rows_ - 1)) return;
-    const int view_col = static_cast<int>(u);
-    const int row = static_cast<int>(v);
-    const auto s = static_cast<float>(u - view_col);
-    const auto t = static_cast<float>(v - row);
-    const CameraMask& seeing = seeing_[static_cast<std::size_t>(view_col)];
-    if (seeing.none()) return;
-    for (std::size_t i = 0; i < cameras_.size(); ++i) {
-        if (!seeing[i]) continue;
-        const Camera& camera = cameras_[i];
-        const int col = view_col - camera.first + (view_col < camera.first ? kCols : 0);
-        const Node* top =
-            camera.nodes.data() + static_cast<std::ptrdiff_t>(row) * camera.cols + col;
-        const Node* bottom = top + camera.cols;
-        if (!top[0].sees || !top[1].sees || !bottom[0].sees || !bottom[1].sees) continue;
-        const auto mix = [&](float Node::*part) {
-            const float above = top[0].*part + s * (top[1].*part - top[0].*part);
-            const float below = bottom[0].*part + s * (bottom[1].*part - bottom[0].*part);
-            return above + t * (below - above);
-        };
-        const Vector2d pixel(mix(&Node::x_px), mix(&Node::y_px));
-        sights.push_back({static_cast<int>(i), pixel,
-                          present[i] ? SideMargin(camera.width_px, camera.height_px, pixel) : -1});
+    Places places;
+    Place(view, places);
+    FindCameras(places, view.count, sights);
+    for (CameraSightRun& run : sights.cameras()) {
+        ReadPixels(places, run);
+        const auto i = static_cast<std::size_t>(run.camera);
+        TakeMargins(cameras_[i].width_px, cameras_[i].height_px, present[i], run);
     }
-    UnitGeometry::ShareByMargins(sights);
+    ShareByMargins(sights);
 }
 
 }  // namespace hitchview::algo

@@ -9,9 +9,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Cameras are blended where their margins differ by less than this share of the picture's width.
-constexpr double kBlendWidth = 0.035;
-
 }  // namespace
 
 double SideMargin(int width_px, int height_px, const Vector2d& pixel) {

@@ -55,6 +55,9 @@ class UnitGeometry {
  public:
     using Sights = FixedVector<CameraSight, kMaxCameras>;
 
+    /// Cameras are blended where their margins (see SideMargin) differ by less.
+    static constexpr double kBlendWidth = 0.035;
+
     static UnitGeometry Plane(int width_px, int height_px);
     /// 1..kMaxCameras cameras. `view`: a ring.
     static UnitGeometry Ring(const Projection& view, std::span<const CameraGeometry> cameras,

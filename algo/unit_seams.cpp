@@ -1,6 +1,7 @@
 #include "algo/unit_seams.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "algo/smooth_step.hpp"
 
@@ -66,7 +67,9 @@ void UnitSeams::Follow(std::span<const float> cost) {
 }
 
 double UnitSeams::Beyond(Overlap overlap, int row, double x_px) const {
-    return SmoothStep((x_px - path_[overlap].x_px(row)) / (2 * options_.half_width_px) + 0.5);
+    const double off_px = x_px - path_[overlap].x_px(row);
+    if (std::abs(off_px) >= options_.half_width_px) return off_px > 0 ? 1 : 0;  // as mostly
+    return SmoothStep(off_px / (2 * options_.half_width_px) + 0.5);
 }
 
 double UnitSeams::TractorShare(int row, double x_px) const {

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "algo/corner_grid.hpp"
+#include "algo/corner_mesh.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -38,6 +41,29 @@ TEST(CornerGridTest, WithoutCornersItIsEmpty) {
     EXPECT_TRUE(CornerField().empty());
     EXPECT_EQ(CornerField().rows(), 0);
     EXPECT_FALSE(CornerField(Projection::Plane(8, 8), {0, 0}).empty());
+}
+
+TEST(CornerMeshTest, AtTheCornersItSaysWhatTheMeshSays) {
+    for (const Projection& canvas :
+         {Projection::Cylinder(4096, 720, 0.5), Projection::Cylinder(1000, 170, 0.4),
+          Projection::Plane(331, 203)}) {
+        const Mesh mesh(canvas);
+        std::mt19937 random(4);
+        std::uniform_real_distribution<float> value(-30, 30);
+        VertexField field;
+        for (float& number : field.reshaped()) number = value(random);
+        CloseRing(mesh, field);
+        const CornerMesh corner_mesh(canvas);
+        CornerField at_corners(canvas, Eigen::Vector2f(99, 99));
+        for (int row = 0; row < at_corners.rows(); ++row) {
+            corner_mesh.SampleRow(field, row, at_corners);
+            for (int col = 0; col < at_corners.cols(); ++col) {
+                const Eigen::Vector2d expected = Sample(mesh, field, at_corners.Pixel(row, col));
+                EXPECT_LT((at_corners.at(row, col).cast<double>() - expected).norm(), 1e-4)
+                    << row << " " << col;
+            }
+        }
+    }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "algo/mesh.hpp"
 #include "algo/seam_detail.hpp"
 #include "algo/task_runner.hpp"
 
@@ -31,7 +32,11 @@ class SeamDetailTest : public testing::Test {
     }
     void Fade(const SeamDetailOptions& options = {}) {
         SerialRunner runner;
-        FadeFromSeams(Mesh(canvas_), mesh_, detail_, seams_, options, runner, shown_);
+        CornerField coarse(canvas_, Vector2f::Zero());
+        for (int row = 0; row < coarse.rows(); ++row) {
+            for (int col = 0; col < coarse.cols(); ++col) coarse.at(row, col) = Coarse(row, col);
+        }
+        FadeFromSeams(coarse, detail_, seams_, options, runner, shown_);
     }
     void FillDetail(std::uint64_t seed, float most_px) {
         cv::RNG random(seed);
@@ -48,8 +53,10 @@ class SeamDetailTest : public testing::Test {
         CloseRing(Mesh(canvas_), mesh_);
     }
     [[nodiscard]] Vector2f Whole(int row, int col) const {
-        return shown_.at(row, col) +
-               Sample(Mesh(canvas_), mesh_, detail_.Pixel(row, col)).cast<float>();
+        return shown_.at(row, col) + Coarse(row, col);
+    }
+    [[nodiscard]] Vector2f Coarse(int row, int col) const {
+        return Sample(Mesh(canvas_), mesh_, detail_.Pixel(row, col)).cast<float>();
     }
     /// Visits neighbours in a row on the same side of the ring's middle.
     template <typename Visitor>

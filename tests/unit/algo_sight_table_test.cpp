@@ -2,6 +2,8 @@
 
 #include <numbers>
 #include <random>
+#include <span>
+#include <vector>
 
 #include "algo/sight_table.hpp"
 #include "tests/support/small_ring.hpp"
@@ -17,6 +19,38 @@ UnitGeometry Ring(int cameras, double apart_rad) {
     return UnitGeometry::Ring(view, tests::LevelCameras(cameras, apart_rad, std::numbers::pi), {});
 }
 
+/// What the table says of pixels: a run of them, asked one by one.
+class TabulatedRun {
+ public:
+    TabulatedRun(const SightTable& table, std::span<const Vector2d> pixels,
+                 const CameraMask& present) {
+        PixelRun run;
+        run.count = static_cast<int>(pixels.size());
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            run.x_px[i] = static_cast<float>(pixels[i].x());
+            run.y_px[i] = static_cast<float>(pixels[i].y());
+        }
+        table.See(run, present, sights_);
+    }
+    UnitGeometry::Sights operator[](int pixel) {
+        UnitGeometry::Sights sights;
+        const auto i = static_cast<std::size_t>(pixel);
+        for (const CameraSightRun& run : sights_.cameras()) {
+            if (pixel < run.first || pixel >= run.end || run.share[i] < 0) continue;
+            sights.push_back({run.camera, Vector2d(run.x_px[i], run.y_px[i]), run.share[i]});
+        }
+        return sights;
+    }
+
+ private:
+    SightRuns sights_;
+};
+
+UnitGeometry::Sights SeeOne(const SightTable& table, const Vector2d& pixel,
+                            const CameraMask& present = CameraMask().set()) {
+    return TabulatedRun(table, {&pixel, 1}, present)[0];
+}
+
 const CameraSight* Find(const UnitGeometry::Sights& sights, int camera) {
     for (const CameraSight& sight : sights) {
         if (sight.camera == camera) return &sight;
@@ -24,30 +58,35 @@ const CameraSight* Find(const UnitGeometry::Sights& sights, int camera) {
     return nullptr;
 }
 
-/// Compares table and lens models at random pixels; returns how many sights were compared.
+/// Compares table and lens models at random pixels, in runs of up to the greatest length; returns
+/// how many sights were compared.
 int Compare(const UnitGeometry& geometry, const CameraMask& present) {
     const SightTable table(geometry);
     std::mt19937 random(1);
     std::uniform_real_distribution<double> x(-1500, 2500);  // whole turns off, too
     std::uniform_real_distribution<double> y(-20, 199);
     int compared = 0;
-    UnitGeometry::Sights tabulated;
     UnitGeometry::Sights exact;
-    for (int i = 0; i < 3000; ++i) {
-        const Vector2d pixel(x(random), y(random));
-        table.See(pixel, present, tabulated);
-        geometry.See(geometry.view().Ray(pixel), present, exact);
-        for (const CameraSight& sight : tabulated) {
-            const CameraSight* other = Find(exact, sight.camera);
-            EXPECT_NE(other, nullptr) << pixel.transpose();
-            if (other == nullptr) continue;
-            EXPECT_LT((sight.pixel - other->pixel).norm(), 0.1) << pixel.transpose();
-            EXPECT_NEAR(sight.weight, other->weight, 0.02) << pixel.transpose();
-            ++compared;
-        }
-        for (const CameraSight& sight : exact) {
-            if (sight.weight < 0.01) continue;
-            EXPECT_NE(Find(tabulated, sight.camera), nullptr) << pixel.transpose();
+    for (std::size_t run = 0; run < 100; ++run) {
+        std::vector<Vector2d> pixels(1 + run % PixelRun::kMost);
+        for (Vector2d& pixel : pixels) pixel = {x(random), y(random)};
+        TabulatedRun tabulated_run(table, pixels, present);
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            const Vector2d& pixel = pixels[i];
+            const UnitGeometry::Sights tabulated = tabulated_run[static_cast<int>(i)];
+            geometry.See(geometry.view().Ray(pixel), present, exact);
+            for (const CameraSight& sight : tabulated) {
+                const CameraSight* other = Find(exact, sight.camera);
+                EXPECT_NE(other, nullptr) << pixel.transpose();
+                if (other == nullptr) continue;
+                EXPECT_LT((sight.pixel - other->pixel).norm(), 0.1) << pixel.transpose();
+                EXPECT_NEAR(sight.weight, other->weight, 0.02) << pixel.transpose();
+                ++compared;
+            }
+            for (const CameraSight& sight : exact) {
+                if (sight.weight < 0.01) continue;
+                EXPECT_NE(Find(tabulated, sight.camera), nullptr) << pixel.transpose();
+            }
         }
     }
     return compared;
@@ -64,30 +103,24 @@ TEST(SightTableTest, ACameraWithoutAPictureLeavesItsShareToTheOthers) {
 TEST(SightTableTest, ASingleCameraIsSeenInItsOwnColumnsOnly) {
     const UnitGeometry geometry = Ring(1, 0);
     const SightTable table(geometry);
-    UnitGeometry::Sights sights;
-    table.See({0, 90}, CameraMask().set(), sights);
-    EXPECT_EQ(sights.count(), 1) << "the rear lies at the view's edge";
-    table.See({512, 90}, CameraMask().set(), sights);
-    EXPECT_EQ(sights.count(), 0);
+    EXPECT_EQ(SeeOne(table, {0, 90}).count(), 1) << "the rear lies at the view's edge";
+    EXPECT_EQ(SeeOne(table, {512, 90}).count(), 0);
 }
 
 TEST(SightTableTest, FarAboveAndBelowTheViewThereIsNothing) {
     const SightTable table(Ring(5, 1.2));
-    UnitGeometry::Sights sights;
-    for (const double y : {-1000.0, 1000.0, 1e9, -1e9}) {
-        table.See({0, y}, CameraMask().set(), sights);
-        EXPECT_EQ(sights.count(), 0) << y;
-    }
+    for (const double y : {-1000.0, 1000.0, 1e9, -1e9})
+        EXPECT_EQ(SeeOne(table, {0, y}).count(), 0) << y;
 }
 
 TEST(SightTableTest, APlanesPixelsAreItsCameras) {
     const SightTable table(UnitGeometry::Plane(320, 200));
-    UnitGeometry::Sights sights;
-    table.See({-12.5, 700.25}, CameraMask().set(), sights);
+    UnitGeometry::Sights sights = SeeOne(table, {-12.5, 700.25});
     ASSERT_EQ(sights.count(), 1);
     EXPECT_EQ(sights[0].pixel, Vector2d(-12.5, 700.25));
     EXPECT_EQ(sights[0].weight, 1);
-    table.See({3, 4}, CameraMask(), sights);
+    sights = SeeOne(table, {3, 4}, CameraMask());
+    ASSERT_EQ(sights.count(), 1);
     EXPECT_EQ(sights[0].weight, 0) << "it gives no picture";
 }
 
