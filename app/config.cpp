@@ -134,7 +134,11 @@ RigConfig ReadRig(YamlMap& root, ConfigContext& context) {
     config.real_time = ReadRealTime(root["real_time"]);
     config.period = ReadPeriod(root["period_ms"]);
     config.set_tolerance = ReadSetTolerance(root["set_tolerance_ms"], config, context);
-    config.can = ReadCan(root["can"], context);
+    const YamlValue can = root["can"];
+    config.can = ReadCan(can, context);
+    if (context.live_cameras > 0 && config.can &&
+        config.can->source != CanConfig::Source::kSocketCan)
+        can.Refuse("a map with the source {socketcan: NAME} beside live cameras");
     config.publish = ReadPublish(root["publish"]);
     root.Finish();
     return config;
