@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 
 #include "algo/projection.hpp"
@@ -49,7 +50,21 @@ struct MeshPlace {
     std::array<float, 4> share;
 };
 /// Outside the mesh: the nearest place on its edge.
-MeshPlace Locate(const Mesh& mesh, const Eigen::Vector2d& pixel);
+inline MeshPlace Locate(const Mesh& mesh, const Eigen::Vector2d& pixel) {
+    const double x = mesh.ring ? WrapColumn(pixel.x(), mesh.width_px) : pixel.x();
+    const double u =
+        std::clamp((x - mesh.origin_px.x()) / mesh.cell_px.x(), 0.0, Mesh::kCols - 1e-6);
+    const double v =
+        std::clamp((pixel.y() - mesh.origin_px.y()) / mesh.cell_px.y(), 0.0, Mesh::kRows - 1e-6);
+    const int col = static_cast<int>(u);
+    const int row = static_cast<int>(v);
+    const auto fx = static_cast<float>(u - col);
+    const auto fy = static_cast<float>(v - row);
+    const int i = Mesh::Index(row, col);
+    const int below = i + Mesh::kVertexCols;
+    return {{i, i + 1, below, below + 1},
+            {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
+}
 
 /// The vertex of a ring's first column if `vertex` is the same one in the last column.
 inline int FirstColumnOfRing(int vertex) {
@@ -57,7 +72,13 @@ inline int FirstColumnOfRing(int vertex) {
 }
 
 /// `field` at `pixel`, bilinear; outside the mesh the nearest edge's value.
-Eigen::Vector2d Sample(const Mesh& mesh, const VertexField& field, const Eigen::Vector2d& pixel);
+inline Eigen::Vector2d Sample(const Mesh& mesh, const VertexField& field,
+                              const Eigen::Vector2d& pixel) {
+    const MeshPlace place = Locate(mesh, pixel);
+    Eigen::Vector2f sum = Eigen::Vector2f::Zero();
+    for (std::size_t k = 0; k < 4; ++k) sum += place.share[k] * field.col(place.vertex[k]);
+    return sum.cast<double>();
+}
 
 /// On a ring: makes the last column equal to the first.
 void CloseRing(const Mesh& mesh, VertexField& field);
