@@ -44,9 +44,10 @@ ComposedMap::ComposedMap(const Projection& canvas,
         if (!geometry[unit]) continue;
         units_[unit] = std::make_unique<UnitMap>(canvas, *geometry[unit]);
         for (int i = 0; i < geometry[unit]->cameras(); ++i) {
-            sources_.push_back({unit, i, std::vector<Corner>(corners), std::vector<float>(corners),
-                                std::vector<Columns>(static_cast<std::size_t>(rows_), Columns{cols_, -1}),
-                                std::vector<Columns>(static_cast<std::size_t>(rows_))});
+            sources_.push_back(
+                {unit, i, std::vector<Corner>(corners), std::vector<float>(corners),
+                 std::vector<Columns>(static_cast<std::size_t>(rows_), Columns{cols_, -1}),
+                 std::vector<Columns>(static_cast<std::size_t>(rows_))});
         }
     }
 }
@@ -154,7 +155,8 @@ void ComposedMap::TakeSights(Unit unit, int row, int first_col, int count, Sight
     }
     for (int i = 0; i < units_[unit]->geometry.cameras(); ++i) {
         sources_[static_cast<std::size_t>(first_source_[unit] + i)].Replace(
-            At(row, 0), {first_col, first_col + count - 1}, taken[static_cast<std::size_t>(i)], row);
+            At(row, 0), {first_col, first_col + count - 1}, taken[static_cast<std::size_t>(i)],
+            row);
     }
 }
 
@@ -170,8 +172,8 @@ void ComposedMap::TakeSights(Unit unit, std::size_t first, const CameraSightRun&
         const std::size_t at = first + i;
         const float x = sights.x_px[i];
         const float y = sights.y_px[i];
-        const float share = std::max(0.0F, sights.share[i]);
-        const bool sees = sights.share[i] >= 0;
+        const float share = sights.share[i];
+        const bool sees = !std::isnan(x);
         const bool inside = sees && x >= 0 && y >= 0 && x <= right_px && y <= bottom_px;
         source.corners[at] = {sees ? x : 0, sees ? y : 0, 0, sees};
         source.share[at] = inside && !present ? kAbsent : share;
@@ -313,7 +315,8 @@ void ComposedMap::Source::Weight(int row, std::size_t row_at, const Columns& col
     const int last = std::min(columns.last, looked_at.last);
     for (int col = std::max(columns.first, looked_at.first); col <= last; ++col) {
         const std::size_t at = row_at + static_cast<std::size_t>(col);
-        const float weight = shares[unit][static_cast<std::size_t>(col - columns.first)] * share[at];
+        const float weight =
+            shares[unit][static_cast<std::size_t>(col - columns.first)] * share[at];
         corners[at].weight = weight;
         if (weight > 0) weighted = {std::min(weighted.first, col), col};
     }

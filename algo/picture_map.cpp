@@ -31,6 +31,15 @@ struct RayRun {
     int count;
 };
 
+void Turn(const Matrix3d& M_to_from, const Vector3d* from, RayRun& rays) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(rays.count); ++i) {
+        const Vector3d ray = M_to_from * from[i];
+        rays.x[i] = ray.x();
+        rays.y[i] = ray.y();
+        rays.z[i] = ray.z();
+    }
+}
+
 /// atan(t) / t for t^2 in 0..1, to 1e-8: a polynomial through nine Chebyshev points.
 inline double ArcTangentShare(double t2) {
     constexpr std::array<double, 9> kCoefficients{0.9999999818,  -0.3333303671,  0.1999187203,
@@ -103,23 +112,17 @@ void PictureMap::PlaceRow(const Matrix3d& M_to_from, const VertexField* offset, 
     RayRun run;
     for (int first = 0; first < cols_; first += RayRun::kMost) {
         run.count = std::min(RayRun::kMost, cols_ - first);
-        for (int i = 0; i < run.count; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            const Vector3d ray = M_to_from * rays_[Index(row, first + i)];
-            run.x[at] = ray.x();
-            run.y[at] = ray.y();
-            run.z[at] = ray.z();
-        }
+        const std::size_t at = Index(row, first);
+        Turn(M_to_from, rays_.data() + at, run);
         if (to_.IsRing()) {
             PlaceOnCylinder(to_, run);
         } else {
             PlaceOnPlane(run);
         }
-        for (int i = 0; i < run.count; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            Vector2d place(run.x[at], run.y[at]);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(run.count); ++i) {
+            Vector2d place(run.x[i], run.y[i]);
             if (offset != nullptr) place -= Sample(to_mesh_, *offset, place);
-            nodes_[Index(row, first + i)] = place.cast<float>();
+            nodes_[at + i] = place.cast<float>();
         }
     }
 }
@@ -131,6 +134,7 @@ void PictureMap::Unwrap() {
         for (int col = row == 0 ? 1 : 0; col < cols_; ++col) {
             const float before_x = nodes_[col > 0 ? Index(row, col - 1) : Index(row - 1, col)].x();
             float& x = nodes_[Index(row, col)].x();
+            if (std::abs(x - before_x) <= 0.5F * width_px) continue;  // as most are
             x -= width_px * std::round((x - before_x) / width_px);
         }
     }

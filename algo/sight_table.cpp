@@ -14,9 +14,9 @@ using Eigen::Vector2d;
 
 /// How far a stabilised view may be tilted, so that more of it is seen above or below.
 constexpr double kTilt_rad = 0.2;
-/// Instead of a margin, which is not less than 0.
+/// Instead of a margin, which is not less than 0; so low that no share is left.
 constexpr float kNoShare = -1;
-constexpr float kNoPixel = -2;
+constexpr float kLeastSum = 1e-6F;  // without a share
 constexpr auto kBlendWidth = static_cast<float>(UnitGeometry::kBlendWidth);
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 
@@ -25,7 +25,7 @@ int RowsOver(double length_px, double pitch_px) {
 }
 
 /// Into `share`: distance to the nearer side edge, as a share of the width; kNoShare where the
-/// picture cannot be shown, kNoPixel where there is no pixel.
+/// picture cannot be shown.
 HV_MULTIVERSION
 void TakeMargins(float width_px, float height_px, bool present, CameraSightRun& run) {
     const float per_px = 1 / width_px;
@@ -34,8 +34,7 @@ void TakeMargins(float width_px, float height_px, bool present, CameraSightRun& 
         const float y = run.y_px[i];
         const float margin = std::min(x, width_px - 1 - x) * per_px;
         const bool shows = present && margin >= 0 && y >= 0 && y <= height_px - 1;
-        const float share = shows ? margin : kNoShare;
-        run.share[i] = std::isnan(x) ? kNoPixel : share;
+        run.share[i] = shows ? margin : kNoShare;
     }
 }
 
@@ -52,17 +51,14 @@ void ShareByMargins(SightRuns& sights) {
     for (CameraSightRun& run : sights.cameras()) {
         for (auto i = static_cast<std::size_t>(run.first); i < static_cast<std::size_t>(run.end);
              ++i) {
-            const float share = std::max(0.0F, run.share[i] - best[i] + kBlendWidth);
-            sum[i] += run.share[i] < 0 ? 0 : share;
-            run.share[i] = run.share[i] < 0 ? run.share[i] : share;
+            run.share[i] = std::max(0.0F, run.share[i] - best[i] + kBlendWidth);
+            sum[i] += run.share[i];
         }
     }
     for (CameraSightRun& run : sights.cameras()) {
         for (auto i = static_cast<std::size_t>(run.first); i < static_cast<std::size_t>(run.end);
-             ++i) {
-            const float share = run.share[i] / (sum[i] > 0 ? sum[i] : 1);
-            run.share[i] = run.share[i] == kNoShare ? 0 : run.share[i] == kNoPixel ? -1 : share;
-        }
+             ++i)
+            run.share[i] /= std::max(kLeastSum, sum[i]);
     }
 }
 
@@ -148,8 +144,7 @@ void SightTable::Place(const PixelRun& view, Places& places) const {
         const float inside = std::clamp(v, 0.0F, last_row - 1);
         places.col[i] = static_cast<std::int32_t>(around);
         places.row[i] = static_cast<std::int32_t>(inside);
-        const float s = around - static_cast<float>(places.col[i]);
-        places.s[i] = v >= 0 && v < last_row ? s : kUnseen;
+        places.s[i] = around - static_cast<float>(places.col[i]);
         places.t[i] = v - static_cast<float>(places.row[i]);
     }
 }
@@ -185,7 +180,8 @@ void SightTable::ReadPixels(const Places& places, CameraSightRun& sights) const 
         const int right = places.col[i] - camera.first;
         const int wanted = right + (right < 0 ? kCols : 0);
         const int col = std::min(wanted, camera.cols - 2);
-        const float s = wanted == col ? places.s[i] : kUnseen;
+        const bool between = wanted == col && places.t[i] >= 0 && places.t[i] < 1;
+        const float s = between ? places.s[i] : kUnseen;
         const float* top = nodes + 2 * (places.row[i] * camera.cols + col);
         const Pair above = Eigen::Map<const Pair>(top);
         const Pair below = Eigen::Map<const Pair>(top + 2 * camera.cols);

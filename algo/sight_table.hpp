@@ -26,9 +26,9 @@ struct CameraSightRun {
     int camera;  ///< index within the unit
     int first;
     int end;
-    alignas(64) PixelRun::Of<float> x_px;  ///< of the camera's picture; perhaps outside it
+    alignas(64) PixelRun::Of<float> x_px;  ///< of its picture, perhaps outside; NaN: it has none
     alignas(64) PixelRun::Of<float> y_px;
-    alignas(64) PixelRun::Of<float> share;  ///< in the view, 0..1; less than 0: it has no pixel
+    alignas(64) PixelRun::Of<float> share;  ///< in the view, 0..1
 };
 
 /// A list that is not cleared before it is filled.
@@ -71,8 +71,8 @@ class SightTable {
     struct Places {
         alignas(64) PixelRun::Of<std::int32_t> row;  ///< of the top left one of four nodes
         alignas(64) PixelRun::Of<std::int32_t> col;
-        alignas(64) PixelRun::Of<float> s;  ///< to the right of it, 0..1; NaN: beyond the nodes
-        alignas(64) PixelRun::Of<float> t;  ///< down from it
+        alignas(64) PixelRun::Of<float> s;  ///< to the right of it, 0..1
+        alignas(64) PixelRun::Of<float> t;  ///< down from it, 0..1; else beyond the nodes
     };
 
     void Fill(const UnitGeometry& geometry);

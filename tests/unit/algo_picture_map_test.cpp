@@ -48,5 +48,23 @@ TEST(PictureMapTest, AnUpdateForgetsTheOneBefore) {
     EXPECT_LT((places.At(pixel) - kCanvas.Pixel(kView.Ray(pixel))).norm(), 0.01);
 }
 
+TEST(PictureMapTest, ItsNodesAreExactInEveryDirection) {
+    PictureMap places(kView, kCanvas);
+    SerialRunner runner;
+    for (int turn = 0; turn < 16; ++turn) {
+        const Matrix3d M = (AngleAxisd(0.4 * turn, Vector3d::UnitZ()) *
+                            AngleAxisd(0.1, Vector3d(1, 2, 0).normalized()))
+                               .toRotationMatrix();
+        places.Update(M, runner);
+        for (int y = 0; y < kView.height_px; y += 16) {
+            for (int x = 0; x < kView.width_px; x += 16) {
+                const Vector2d exact = kCanvas.Pixel(M * kView.Ray({x, y}));
+                EXPECT_LT(kCanvas.Difference(places.At({x, y}), exact).norm(), 1e-3)
+                    << turn << ": " << x << ", " << y;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace hitchview::algo

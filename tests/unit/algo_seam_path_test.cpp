@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <random>
+#include <vector>
 
 #include "algo/seam_cost.hpp"
 #include "algo/seam_path.hpp"
@@ -254,6 +258,40 @@ TEST(SeamCostTest, APatchIsTheMeanGreyOfItsCellsWithTheGain) {
     EXPECT_NEAR(patch.cell[0], 60, 1e-4);
     EXPECT_NEAR(patch.cell[1], 120, 1e-4);
     EXPECT_NEAR(ReadGreyPatch(frame, 1, 31, 0).cell[0], 80, 1e-4) << "moved inwards at the edge";
+}
+
+TEST(SeamCostTest, APatchOfEveryLayoutIsTheMeanOfItsPixelsAlsoAtTheEdges) {
+    constexpr int kWidth = 22;
+    constexpr int kHeight = 18;
+    std::mt19937 random(8);
+    std::vector<std::uint8_t> bytes(2 * kWidth * kHeight);
+    for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+    for (const PixelLayout layout :
+         {PixelLayout::kGrey, PixelLayout::kNv12, PixelLayout::kUyvy, PixelLayout::kYuyv}) {
+        CameraFrame frame;
+        frame.width_px = kWidth;
+        frame.height_px = kHeight;
+        frame.layout = layout;
+        frame.luma = bytes.data();
+        frame.luma_stride_bytes = frame.is_packed() ? 2 * kWidth : kWidth;
+        const SamplePlane luma = frame.LumaSamples();
+        for (int y = 0; y < kHeight; ++y) {
+            for (int x = 0; x < kWidth; ++x) {
+                const int left = std::clamp(x - 4, 0, kWidth - 8);
+                const int top = std::clamp(y - 4, 0, kHeight - 8);
+                std::array<int, 4> sums{};
+                for (int r = 0; r < 8; ++r) {
+                    for (int c = 0; c < 8; ++c)
+                        sums[static_cast<std::size_t>(r / 4 * 2 + c / 4)] +=
+                            luma.row(top + r)[(left + c) * luma.step_bytes];
+                }
+                const GreyPatch patch = ReadGreyPatch(frame, 1, static_cast<float>(x) + 0.5F,
+                                                      static_cast<float>(y) + 0.5F);
+                for (std::size_t cell = 0; cell < sums.size(); ++cell)
+                    EXPECT_EQ(patch.cell[cell], static_cast<float>(sums[cell]) / 16) << x << y;
+            }
+        }
+    }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 #include <random>
 #include <span>
@@ -36,7 +37,7 @@ class TabulatedRun {
         UnitGeometry::Sights sights;
         const auto i = static_cast<std::size_t>(pixel);
         for (const CameraSightRun& run : sights_.cameras()) {
-            if (pixel < run.first || pixel >= run.end || run.share[i] < 0) continue;
+            if (pixel < run.first || pixel >= run.end || std::isnan(run.x_px[i])) continue;
             sights.push_back({run.camera, Vector2d(run.x_px[i], run.y_px[i]), run.share[i]});
         }
         return sights;
