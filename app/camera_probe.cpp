@@ -102,6 +102,11 @@ CameraDevice ToDevice(const V4l2DeviceReport& report, const std::vector<CameraWi
 }
 
 void Measure(CameraDevice& device) {
+    if (!device.pick) return;
+    if (device.state == CameraDevice::State::kBusy) {
+        device.not_measured = "not measured: a program streams from it";
+        return;
+    }
     drivers::V4l2CameraOptions options;
     options.name = device.path;
     options.path = device.path;
@@ -125,9 +130,7 @@ std::vector<CameraDevice> ProbeCameras(const std::vector<CameraWish>& wishes,
     for (const V4l2DeviceReport& report : drivers::ProbeV4l2Devices(
              drivers::V4l2LinkFolders(), drivers::SystemKernel(), DriverWish(first).size)) {
         devices.push_back(ToDevice(report, wishes));
-        CameraDevice& device = devices.back();
-        const bool free = device.state == CameraDevice::State::kFree;
-        if (measure == CameraMeasure::kReadSpeed && free && device.pick) Measure(device);
+        if (measure == CameraMeasure::kReadSpeed) Measure(devices.back());
     }
     return devices;
 }

@@ -1,5 +1,6 @@
 #include "app/cameras_verb.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -29,7 +30,7 @@ int Show(const CamerasOptions& options, const std::optional<RigConfig>& rig) {
         ProbeCameras(wishes, options.measure ? CameraMeasure::kReadSpeed : CameraMeasure::kNo);
     json everything{{"devices", CamerasJson(devices)}, {"rig", nullptr}};
     std::string text = CameraTable(devices, options.all ? CameraDetail::kAll : CameraDetail::kBest);
-    bool all_there = !devices.empty();
+    bool all_there = std::ranges::any_of(devices, &CameraDevice::IsOpen);
     if (rig) {
         const auto matches = MatchCameras(*rig, devices);
         everything["rig"] = MatchesJson(matches);

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <charconv>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <system_error>
 
@@ -44,6 +45,14 @@ std::vector<std::string> LinksTo(const std::string& path, const std::vector<std:
         std::sort(links.begin() + first, links.end());
     }
     return links;
+}
+
+/// What the kernel calls a device, told to those too who may not open it.
+std::string NameOf(int number) {
+    std::string name;
+    std::getline(std::ifstream("/sys/class/video4linux/video" + std::to_string(number) + "/name"),
+                 name);
+    return name;
 }
 
 /// One buffer, asked for and given back: only a buffer tells of the stamps.
@@ -100,6 +109,7 @@ std::vector<V4l2DeviceReport> ProbeV4l2Devices(const std::vector<std::string>& l
         if (opened) {
             Describe(device, wanted, report);
         } else {
+            report.card = NameOf(number);
             report.refusal = ToString(opened.error());
             report.refusal_number = opened.error().error_number;
         }

@@ -25,7 +25,7 @@ struct V4l2DeviceReport {
     /// Known only of a device that nobody streams from.
     bool stamps_known = false;
     V4l2StampSource stamps = V4l2StampSource::kEndOfFrame;
-    std::string refusal;     ///< why nothing more is known; empty otherwise
+    std::string refusal;     ///< why nothing but `card` is known; empty otherwise
     int refusal_number = 0;  ///< its errno: EACCES
 };
 

@@ -142,6 +142,13 @@ TEST_F(ConfigLiveTest, OneDeviceIsNotTwoCameras) {
               "rig.yaml:4: units.tractor.cameras[1].source is a map, must be a device of its own");
 }
 
+TEST_F(ConfigLiveTest, TwoDevicesThatAreNotSaidAreNotTheSame) {
+    const std::string cameras = "units.tractor.cameras";
+    EXPECT_EQ(Refusal("{name: a, source: {v4l2: \"\"}}, {name: b, source: {v4l2: \"\"}}"),
+              "rig.yaml:4: " + cameras + "[0].source.v4l2 is \"\", must be text\n" +
+                  "rig.yaml:4: " + cameras + "[1].source.v4l2 is \"\", must be text");
+}
+
 TEST_F(ConfigLiveTest, LiveAndRecordedCamerasDoNotMix) {
     for (const std::string other : {"{replay: b.avi}", "{simulated: true}"}) {
         EXPECT_EQ(
