@@ -51,6 +51,7 @@ std::string RatesText(std::vector<OfferedRates> rates, CameraDetail detail) {
     const bool cut = detail == CameraDetail::kBest && rates.size() > kBestRates;
     if (cut) rates.resize(kBestRates);
     std::vector<std::string> texts;
+    texts.reserve(rates.size());
     for (const OfferedRates& each : rates) texts.push_back(RangeText(each));
     return " at " + Joined(texts, ", ") + (cut ? ", .." : "") + " Hz";
 }
@@ -76,35 +77,46 @@ std::string SizesText(std::vector<OfferedSizes> sizes, const CameraDevice& devic
         sizes.resize(kBestSizes);
     }
     std::vector<std::string> texts;
+    texts.reserve(sizes.size() + 1);
     for (const OfferedSizes& each : sizes) texts.push_back(SizesText(each, detail));
     if (left_out > 0) texts.push_back("and " + std::to_string(left_out) + " more");
     return texts.empty() ? "any size" : Joined(texts, "; ");
 }
 
-/// Formats that are offered alike share a line.
-std::string OffersText(const CameraDevice& device, CameraDetail detail) {
-    std::vector<std::pair<std::string, std::string>> lines;  // sizes, formats
-    std::vector<std::string> not_taken;
+struct Offer {
+    std::string sizes;
+    std::string formats;
+};
+
+/// Formats that are offered alike share one.
+std::vector<Offer> Offers(const CameraDevice& device, CameraDetail detail) {
+    std::vector<Offer> offers;
     for (const OfferedFormat& format : device.formats) {
-        if (format.name.empty()) {
-            not_taken.push_back(format.fourcc);
-            continue;
-        }
+        if (format.name.empty()) continue;
         const std::string sizes = SizesText(format.sizes, device, detail);
-        const auto same =
-            std::ranges::find(lines, sizes, &std::pair<std::string, std::string>::first);
-        if (same != lines.end()) {
-            same->second += ", " + format.fourcc;
+        const auto alike = std::ranges::find(offers, sizes, &Offer::sizes);
+        if (alike == offers.end()) {
+            offers.push_back({sizes, format.fourcc});
         } else {
-            lines.emplace_back(sizes, format.fourcc);
+            alike->formats += ", " + format.fourcc;
         }
     }
+    return offers;
+}
+
+std::string NotTaken(const CameraDevice& device) {
+    std::vector<std::string> fourccs;
+    for (const OfferedFormat& format : device.formats) {
+        if (format.name.empty()) fourccs.push_back(format.fourcc);
+    }
+    return fourccs.empty() ? "" : DetailLines("offers", "not taken here: " + Joined(fourccs, ", "));
+}
+
+std::string OffersText(const CameraDevice& device, CameraDetail detail) {
     std::string text;
-    for (const auto& [sizes, formats] : lines)
-        text += DetailLines("offers", formats + ": " + sizes);
-    if (detail == CameraDetail::kAll && !not_taken.empty())
-        text += DetailLines("offers", "not taken here: " + Joined(not_taken, ", "));
-    return text;
+    for (Offer& offer : Offers(device, detail))
+        text += DetailLines("offers", offer.formats.append(": ").append(offer.sizes));
+    return detail == CameraDetail::kAll ? text + NotTaken(device) : text;
 }
 
 std::string SpeedText(const ReadSpeed& speed) {
