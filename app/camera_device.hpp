@@ -71,7 +71,7 @@ struct CameraDevice {
     Stamps stamps = Stamps::kUnknown;
     std::vector<OfferedFormat> formats{};  ///< in the device's order
     std::optional<CameraPick> pick{};
-    std::string no_pick{};             ///< what was wanted and what is offered; with no pick only
+    std::string no_pick{};             ///< what was wanted; with no pick only
     std::optional<ReadSpeed> speed{};  ///< where it was measured
     std::string not_measured{};        ///< why not, where it was tried
 

@@ -71,7 +71,8 @@ void Pick(const std::vector<V4l2FormatOffer>& offers, const CameraWish& wish,
           CameraDevice& device) {
     const auto chosen = drivers::ChooseFormat(offers, DriverWish(wish));
     if (!chosen) {
-        device.no_pick = chosen.error();
+        device.no_pick = "wanted " + SizeText(wish.size_px) + " at " + RateText(wish.rate_hz) +
+                         " Hz as " + wish.format + ", which it does not offer";
         return;
     }
     CameraPick pick{chosen.value()->name, wish.size_px, wish.rate_hz, wish.format != "best", {}};

@@ -32,8 +32,10 @@ std::string Virtue(const std::string& format) {
     return "nothing uncompressed is offered so; each frame is decoded";
 }
 
-std::string WhyText(const CameraDevice& device) {
-    if (!device.pick) return device.no_pick;
+std::string WhyText(const CameraDevice& device, CameraDetail detail) {
+    if (!device.pick)
+        return device.no_pick +
+               (detail == CameraDetail::kBest ? "; --all shows every size and rate" : "");
     const CameraPick& pick = *device.pick;
     const std::string why = pick.by_name ? "the rig file says so" : Virtue(pick.format);
     return pick.others.empty() ? why : why + "; would do too: " + Joined(pick.others, ", ");
@@ -136,7 +138,7 @@ std::string Details(const CameraDevice& device, CameraDetail detail) {
     if (!device.bus.empty()) text += DetailLines("bus", device.bus);
     if (!device.IsOpen())
         return text + DetailLines("why", device.refusal) + DetailLines("do", Remedy(device));
-    text += OffersText(device, detail) + DetailLines("why", WhyText(device));
+    text += OffersText(device, detail) + DetailLines("why", WhyText(device, detail));
     if (device.speed) text += DetailLines("speed", SpeedText(*device.speed));
     if (!device.not_measured.empty()) text += DetailLines("speed", device.not_measured);
     return text;

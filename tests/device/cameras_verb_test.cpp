@@ -34,7 +34,7 @@ class CamerasVerbTest : public testing::Test {
     }
     json Json() const { return json::parse(tests::FileText(folder_ / "cameras.json")); }
     std::string WriteJson() const { return "--json " + (folder_ / "cameras.json"); }
-    std::string Rig(const std::string& rear) {
+    std::string Rig(const std::string& rear, const std::string& size_px = "[640, 360]") {
         return "--rig " +
                folder_.Write("rig.yaml",
                              "schema: 1\n"
@@ -42,7 +42,7 @@ class CamerasVerbTest : public testing::Test {
                              "units:\n"
                              "  tractor: {cameras: [{name: front, source: {v4l2: /dev/video0}}]}\n"
                              "  trailer: {cameras: [{name: rear, source: {v4l2: " +
-                                 rear + ", size_px: [640, 360], format: yuyv}}]}\n");
+                                 rear + ", size_px: " + size_px + ", format: yuyv}}]}\n");
     }
 
     tests::TemporaryFolder folder_;
@@ -89,6 +89,15 @@ TEST_F(CamerasVerbTest, FindsTheCamerasOfARigByNameAndPicksWhatItAsksFor) {
     EXPECT_EQ(device.at("pick").at("format"), "yuyv");
     EXPECT_EQ(device.at("pick").at("size_px"), (std::vector<int>{640, 360}));
     EXPECT_EQ(Json().at("devices")[4].at("pick").at("format"), "nv12");
+}
+
+TEST_F(CamerasVerbTest, ACameraThatCannotGiveWhatTheRigAsksIsOfNoUse) {
+    EXPECT_EQ(Cameras(Rig("/dev/video1", "[800, 600]")), 1);
+    EXPECT_NE(text_.find("trailer  rear    UNUSABLE  /dev/video1\n"
+                         "  name    /dev/video1\n"
+                         "  why     wanted 800x600 at 30 Hz as yuyv, which it does not offer\n"),
+              text_.npos)
+        << text_;
 }
 
 TEST_F(CamerasVerbTest, MeasuresHowFastTheBuffersRead) {

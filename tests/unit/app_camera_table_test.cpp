@@ -134,12 +134,14 @@ TEST(CameraTableTest, ADeviceInUseIsTold) {
                 AllOf(HasSubstr("  busy   unknown"), HasSubstr("offers")));
 }
 
-TEST(CameraTableTest, ADeviceThatCannotDoSaysWhatItOffers) {
+TEST(CameraTableTest, ADeviceThatCannotDoSaysWhatWasWanted) {
     CameraDevice device = Camera();
     device.pick.reset();
-    device.no_pick = "wanted 64x64 at 30 Hz as best; offered: UYVY 640x480";
-    EXPECT_THAT(CameraTable({device}, CameraDetail::kBest),
-                AllOf(HasSubstr("  none\n"), HasSubstr("why     wanted 64x64 at 30 Hz as best")));
+    device.no_pick = "wanted 64x64 at 30 Hz as best, which it does not offer";
+    EXPECT_THAT(
+        CameraTable({device}, CameraDetail::kBest),
+        AllOf(HasSubstr("  none\n"),
+              HasSubstr("why     wanted 64x64 at 30 Hz as best, which it does not offer; --all ")));
 }
 
 TEST(CameraTableTest, AFormatThatTheRigFileNamesIsNotOurChoice) {
