@@ -115,7 +115,8 @@ std::optional<std::chrono::nanoseconds> ReadSetTolerance(const YamlValue& value,
     if (context.live_cameras == 0) value.Refuse("absent unless the cameras are live (v4l2)");
     const auto period = config.period.value_or(std::chrono::nanoseconds(kDefaultPeriod));
     double tolerance_ms = 1;
-    value.Read({1, 1e-6 * static_cast<double>(period.count())}, tolerance_ms);
+    // Divided, not multiplied by 1e-6: so a tolerance written like the period is within it.
+    value.Read({1, static_cast<double>(period.count()) / 1e6}, tolerance_ms);
     return std::chrono::nanoseconds(std::llround(tolerance_ms * 1e6));
 }
 

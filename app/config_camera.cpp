@@ -95,7 +95,8 @@ CameraConfig ReadCamera(const YamlValue& value, ConfigContext& context) {
     }
     const YamlValue source = map.Required("source");
     ReadCameraSource(source, context, camera);
-    if (camera.IsLive() && !context.devices.insert(camera.live.device).second)
+    const std::string& device = camera.live.device;
+    if (!device.empty() && !context.devices.insert(device).second)
         source.Refuse("a device of its own");
     ++(camera.IsLive() ? context.live_cameras : context.recorded_cameras);
     map.Finish();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/bench_verb.hpp"
+#include "app/cameras_verb.hpp"
 #include "app/demo_verb.hpp"
 #include "app/program.hpp"
 #include "app/replay_verb.hpp"
@@ -164,6 +165,20 @@ CLI::App& AddBench(CLI::App& app, BenchOptions& options) {
     return verb;
 }
 
+CLI::App& AddCameras(CLI::App& app, CamerasOptions& options) {
+    CLI::App& verb = *app.add_subcommand(
+        "cameras",
+        "List the cameras of this machine, what would be picked of each and why.\n"
+        "Example: hitchview cameras --rig /etc/hitchview/rig.yaml");
+    verb.add_option("--rig", options.rig, "rig file whose cameras are looked for; 1: some missing")
+        ->check(CLI::ExistingFile);
+    verb.add_flag("--all", options.all, "every format, size and rate that is offered");
+    verb.add_flag("--measure", options.measure,
+                  "stream from each free device for a moment to measure how fast its memory reads");
+    verb.add_option("--json", options.json, "file for everything");
+    return verb;
+}
+
 /// Hands the arguments behind a verb to the program that does it.
 int Forward(const char* program, int argc, char** argv) {
     return RunProgram(SiblingProgram(program), std::vector<std::string>(argv + 2, argv + argc));
@@ -192,6 +207,8 @@ int main(int argc, char** argv) {
     const CLI::App& scenarios_verb = AddScenarios(app, scenarios);
     BenchOptions bench;
     const CLI::App& bench_verb = AddBench(app, bench);
+    CamerasOptions cameras;
+    const CLI::App& cameras_verb = AddCameras(app, cameras);
     app.add_subcommand("view", "Show the published panorama: hitchview view --help");
     app.add_subcommand("eval", "Measure recordings of views and panoramas: hitchview eval --help");
 
@@ -204,5 +221,6 @@ int main(int argc, char** argv) {
     if (replay_verb.parsed()) return ReplayVerb(replay, stop);
     if (scenarios_verb.parsed()) return ScenariosVerb(scenarios, stop);
     if (bench_verb.parsed()) return BenchVerb(bench, stop);
+    if (cameras_verb.parsed()) return CamerasVerb(cameras);
     return ReplayVerb(run, stop);
 }

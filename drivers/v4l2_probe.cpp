@@ -1,8 +1,10 @@
 #include "drivers/v4l2_probe.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <system_error>
 
@@ -36,12 +38,21 @@ std::vector<std::string> LinksTo(const std::string& path, const std::vector<std:
     std::vector<std::string> links;
     std::error_code ignored;
     for (const std::string& folder : folders) {
+        const auto first = static_cast<std::ptrdiff_t>(links.size());
         for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
             if (fs::canonical(entry.path(), ignored) == path) links.push_back(entry.path());
         }
+        std::sort(links.begin() + first, links.end());
     }
-    std::ranges::sort(links);
     return links;
+}
+
+/// What the kernel calls a device, told to those too who may not open it.
+std::string NameOf(int number) {
+    std::string name;
+    std::getline(std::ifstream("/sys/class/video4linux/video" + std::to_string(number) + "/name"),
+                 name);
+    return name;
 }
 
 /// One buffer, asked for and given back: only a buffer tells of the stamps.
@@ -50,7 +61,10 @@ void AskForStamps(const V4l2Device& device, V4l2DeviceReport& report) {
     request.count = 1;
     request.type = device.buffer_type();
     request.memory = V4L2_MEMORY_MMAP;
-    if (!device.Call(VIDIOC_REQBUFS, "VIDIOC_REQBUFS", request)) return;
+    if (const auto asked = device.Call(VIDIOC_REQBUFS, "VIDIOC_REQBUFS", request); !asked) {
+        report.busy = asked.error().error_number == EBUSY;
+        return;
+    }
     std::array<v4l2_plane, VIDEO_MAX_PLANES> planes{};
     v4l2_buffer buffer{};
     buffer.type = request.type;
@@ -65,21 +79,25 @@ void AskForStamps(const V4l2Device& device, V4l2DeviceReport& report) {
     static_cast<void>(device.Call(VIDIOC_REQBUFS, "VIDIOC_REQBUFS", request).ok());
 }
 
-void Describe(const V4l2Device& device, V4l2DeviceReport& report) {
+void Describe(const V4l2Device& device, V4l2Size wanted, V4l2DeviceReport& report) {
     const V4l2Identity& identity = device.identity();
     report.driver = FieldText(identity.driver);
     report.card = FieldText(identity.card);
     report.bus = FieldText(identity.bus);
     report.multi_planar = device.multi_planar();
-    report.offers = ListOffers(device, {1280, 720});
+    report.offers = ListOffers(device, wanted);
     report.controls = ListControls(device, V4l2Menus::kListed);
     AskForStamps(device, report);
 }
 
 }  // namespace
 
+std::vector<std::string> V4l2LinkFolders() {
+    return {"/dev/v4l/by-path", "/dev/v4l/by-id", "/dev/hitchview"};
+}
+
 std::vector<V4l2DeviceReport> ProbeV4l2Devices(const std::vector<std::string>& link_folders,
-                                               V4l2Kernel& kernel) {
+                                               V4l2Kernel& kernel, V4l2Size wanted) {
     std::vector<V4l2DeviceReport> reports;
     for (const int number : Numbers()) {
         V4l2DeviceReport report;
@@ -88,8 +106,13 @@ std::vector<V4l2DeviceReport> ProbeV4l2Devices(const std::vector<std::string>& l
         const auto opened = device.Open(report.path.c_str());
         if (!opened && opened.error().error == hal::Error::kUnsupported) continue;
         report.links = LinksTo(report.path, link_folders);
-        if (opened) Describe(device, report);
-        if (!opened) report.refusal = ToString(opened.error());
+        if (opened) {
+            Describe(device, wanted, report);
+        } else {
+            report.card = NameOf(number);
+            report.refusal = ToString(opened.error());
+            report.refusal_number = opened.error().error_number;
+        }
         reports.push_back(std::move(report));
     }
     return reports;

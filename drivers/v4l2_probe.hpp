@@ -21,18 +21,22 @@ struct V4l2DeviceReport {
     bool multi_planar = false;
     std::vector<V4l2FormatOffer> offers;
     std::vector<V4l2Control> controls;
+    bool busy = false;  ///< somebody streams from it
     /// Known only of a device that nobody streams from.
     bool stamps_known = false;
     V4l2StampSource stamps = V4l2StampSource::kEndOfFrame;
-    std::string refusal;  ///< why nothing more is known; empty otherwise
+    std::string refusal;     ///< why nothing but `card` is known; empty otherwise
+    int refusal_number = 0;  ///< its errno: EACCES
 };
 
+/// Where links to video nodes are made: by udev, and by its rules for a vehicle.
+std::vector<std::string> V4l2LinkFolders();
+
 /// Every node /dev/video* that captures, by number; those that do not (outputs, metadata) are left
-/// out. Changes no setting; a device in use is told of as far as it answers. Needs /dev/v4l for
-/// links, which udev makes, and looks at the links of `link_folders` too. Set-up only.
+/// out. Changes no setting; a device in use is told of as far as it answers. Links: those of
+/// `link_folders`, in that order. `wanted`: see ListOffers. Set-up only.
 std::vector<V4l2DeviceReport> ProbeV4l2Devices(
-    const std::vector<std::string>& link_folders = {"/dev/v4l/by-path", "/dev/v4l/by-id",
-                                                    "/dev/hitchview"},
-    V4l2Kernel& kernel = SystemKernel());
+    const std::vector<std::string>& link_folders = V4l2LinkFolders(),
+    V4l2Kernel& kernel = SystemKernel(), V4l2Size wanted = {1280, 720});
 
 }  // namespace hitchview::drivers

@@ -30,6 +30,7 @@ TEST(V4l2ProbeTest, TellsWhatEveryCameraIsAndCanDo) {
     EXPECT_TRUE(std::ranges::any_of(report.controls, [](const V4l2Control& control) {
         return control.name == "test_pattern" && control.menu.size() > 5;
     }));
+    EXPECT_FALSE(report.busy);
     EXPECT_TRUE(report.stamps_known);
     EXPECT_EQ(report.stamps, V4l2StampSource::kEndOfFrame);
     EXPECT_EQ(report.refusal, "");
@@ -43,6 +44,7 @@ TEST(V4l2ProbeTest, DoesNotDisturbACameraThatStreams) {
     ASSERT_TRUE(camera.ok()) << camera.error();
     const auto reports = ProbeV4l2Devices();
     ASSERT_EQ(reports.size(), 1U);
+    EXPECT_TRUE(reports[0].busy);
     EXPECT_FALSE(reports[0].stamps_known);
     EXPECT_TRUE((*camera)->WaitFrame(std::chrono::milliseconds(1000)).ok());
 }

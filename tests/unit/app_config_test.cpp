@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{kPlane + "stabilisation: {}\n",
                 "rig.yaml:6: stabilisation is no key, must be one of schema, canvas, calibration, "
                 "units, simulation, stabilization, stitching, placement, threads, real_time, "
-                "period_ms, can, publish"},
+                "period_ms, set_tolerance_ms, can, publish"},
         BadFile{kPlane + "threads: {priority: 100, affinity: [0, -1]}\n"
                          "real_time: {lock_memory: always}\n",
                 "rig.yaml:6: threads.priority is 100, must be 0 to 99\n"
@@ -244,11 +244,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "rig.yaml:3: units.tractor.cameras[0].name is missing, must be text"},
         BadFile{Plane(kCanvas, "{cameras: [{name: a}]}"),
                 "rig.yaml:3: units.tractor.cameras[0].source is missing, must be a map"},
-        BadFile{Plane(kCanvas, "{cameras: [{name: a, source: {v4l2: a}}]}"),
-                "rig.yaml:3: units.tractor.cameras[0].source.v4l2 is no key, must be one of "
-                "simulated, replay\n"
-                "rig.yaml:3: units.tractor.cameras[0].source is a map, must be a map with either "
-                "simulated or replay"},
+        BadFile{Plane(kCanvas, "{cameras: [{name: a, source: {rtsp: a}}]}"),
+                "rig.yaml:3: units.tractor.cameras[0].source is a map, must be a map with exactly "
+                "one of simulated, replay and v4l2\n"
+                "rig.yaml:3: units.tractor.cameras[0].source.rtsp is no key, must be one of "
+                "simulated, replay, v4l2"},
         BadFile{Plane(kCanvas, "{cameras: [{name: a, source: {simulated: false}}]}"),
                 "rig.yaml:3: units.tractor.cameras[0].source.simulated is false, must be true"},
         BadFile{Plane(kCanvas,
@@ -349,11 +349,13 @@ TEST_P(RigExampleKeysTest, EveryKeyOfTheSectionIsShown) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sections, RigExampleKeysTest,
-                         testing::Values("x: 1\n", "simulation: {x: 1}\n",
-                                         "stabilization: {x: 1}\n", "stitching: {x: 1}\n",
-                                         "threads: {x: 1}\n", "real_time: {x: 1}\n",
-                                         "can: {x: 1}\n", "can: {hitch_angle: {x: 1}}\n",
-                                         "publish: {x: 1}\n"));
+                         testing::Values("x: 1\n",
+                                         "  trailer: {cameras: [{name: b, source: {v4l2: /dev/b, "
+                                         "x: 1}}]}\n",
+                                         "simulation: {x: 1}\n", "stabilization: {x: 1}\n",
+                                         "stitching: {x: 1}\n", "threads: {x: 1}\n",
+                                         "real_time: {x: 1}\n", "can: {x: 1}\n",
+                                         "can: {hitch_angle: {x: 1}}\n", "publish: {x: 1}\n"));
 
 }  // namespace
 }  // namespace hitchview::app
