@@ -21,10 +21,10 @@ constexpr std::array kFormats{
                          2},
     LibcameraPixelFormat{Fourcc('Y', 'U', 'Y', 'V'), "yuyv", hal::PixelFormat::kYuyv, Packed::kLent,
                          2},
-    LibcameraPixelFormat{Fourcc('R', 'G', '2', '4'), "rgb888", hal::PixelFormat::kNv12,
-                         Packed::kBlueGreenRed, 3},
     LibcameraPixelFormat{Fourcc('B', 'G', '2', '4'), "bgr888", hal::PixelFormat::kNv12,
                          Packed::kRedGreenBlue, 3},
+    LibcameraPixelFormat{Fourcc('R', 'G', '2', '4'), "rgb888", hal::PixelFormat::kNv12,
+                         Packed::kBlueGreenRed, 3},
     LibcameraPixelFormat{Fourcc('R', '8', ' ', ' '), "grey", hal::PixelFormat::kGrey, Packed::kLent,
                          1},
 };
