@@ -1,12 +1,16 @@
 #include <gtest/gtest.h>
+#include <libcamera/camera.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "drivers/libcamera_camera.hpp"
+#include "drivers/libcamera_session.hpp"
 #include "tests/device/camera_follower.hpp"
 #include "tests/device/vimc.hpp"
 
@@ -109,19 +113,51 @@ TEST_F(LibcameraTest, AControlOutOfItsRangeIsNamed) {
     EXPECT_TRUE(OpenLibcamera(options).ok());
 }
 
-TEST_F(LibcameraTest, ACameraThatWasUnpluggedComesBack) {
+// libcamera follows the unplugging of USB cameras only, not of vimc: its signal is given here.
+TEST_F(LibcameraTest, ACameraThatIsLostComesBackAndLentFramesStay) {
     auto camera = OpenLibcamera(Options());
     ASSERT_TRUE(camera.ok()) << camera.error();
+    const auto lent = camera.value()->WaitFrame(milliseconds(2000));
+    ASSERT_TRUE(lent.ok()) << ToString(lent.error());
+    const hal::Plane luma = lent.value().view().planes[0];
+    const std::vector<std::uint8_t> before(luma.data, luma.data + 960 * 540);
     const CameraFollower follower(*camera.value());
-    ASSERT_TRUE(follower.AwaitFrames(10));
-    ASSERT_TRUE(tests::Unplug());
-    ASSERT_TRUE(CameraFollower::Await([&] { return follower.refusals(hal::Error::kNotFound) > 0; },
-                                      milliseconds(10000)));
-    ASSERT_TRUE(tests::Plug());
-    EXPECT_TRUE(CameraFollower::Await([&] { return camera.value()->counts().reopened > 0; },
-                                      milliseconds(10000)));
-    EXPECT_TRUE(follower.AwaitFrames(10));
+    for (std::uint64_t times = 1; times <= 3; ++times) {
+        ASSERT_TRUE(follower.AwaitFrames(5));
+        LibcameraSession::Join().value()->Find(tests::kVimcCamera)->disconnected.emit();
+        ASSERT_TRUE(CameraFollower::Await(
+            [&] { return camera.value()->counts().reopened == times; }, milliseconds(10000)));
+    }
+    EXPECT_TRUE(follower.AwaitFrames(5));
     EXPECT_TRUE(follower.in_order());
+    EXPECT_GE(follower.answers(hal::Error::kDisconnected), 3);
+    EXPECT_TRUE(std::equal(before.begin(), before.end(), luma.data));
+    EXPECT_EQ(camera.value()->counts().corrupted, 0U);
+}
+
+TEST_F(LibcameraTest, ASilentCameraIsGivenUpUntilItIsReopened) {
+    LibcameraOptions options = Options();
+    options.rate_hz = 1000;  // vimc needs 50 ms to a frame: far beyond its patience
+    options.silence_periods = 2;
+    auto camera = OpenLibcamera(options);
+    ASSERT_TRUE(camera.ok()) << camera.error();
+    hal::Error answer = hal::Error::kTimeout;
+    for (int i = 0; i < 100 && answer != hal::Error::kDisconnected; ++i) {
+        const auto frame = camera.value()->WaitFrame(milliseconds(100));
+        if (!frame) answer = frame.error();
+    }
+    ASSERT_EQ(answer, hal::Error::kDisconnected);
+    EXPECT_EQ(camera.value()->WaitFrame(milliseconds(100)).error(), hal::Error::kDisconnected);
+    EXPECT_TRUE(camera.value()->Reopen().ok());
+    EXPECT_EQ(camera.value()->counts().reopened, 1U);
+}
+
+TEST_F(LibcameraTest, ACameraInUseIsRefusedInWords) {
+    const auto first = OpenLibcamera(Options());
+    ASSERT_TRUE(first.ok()) << first.error();
+    const auto second = OpenLibcamera(Options());
+    ASSERT_FALSE(second.ok());
+    EXPECT_THAT(second.error(), HasSubstr("cannot be acquired"));
 }
 
 }  // namespace

@@ -15,15 +15,6 @@ inline bool ShellSucceeds(const std::string& command) {
     return std::system(command.c_str()) == 0;
 }
 
-/// As pulling the plug and putting it back, with programs that have it open. libcamera learns of
-/// both from udev.
-inline bool Unplug() {
-    return ShellSucceeds("echo vimc.0 > /sys/bus/platform/drivers/vimc/unbind");
-}
-inline bool Plug() {
-    return ShellSucceeds("echo vimc.0 > /sys/bus/platform/drivers/vimc/bind && udevadm settle");
-}
-
 class VimcTest : public testing::Test {
  protected:
     void SetUp() override {
