@@ -13,6 +13,9 @@ packages=(
     iproute2 util-linux qemu-user
 )
 
+# Taken where the release has libcamera 0.0.3 or later: Ubuntu 22.04 has not.
+optional_package=libcamera-dev
+
 is_installed() {
     [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
 }
@@ -44,6 +47,12 @@ if ! command -v dpkg-query >/dev/null; then
     exit 3
 fi
 
+optional_is_offered() {
+    local version
+    version=$(apt-cache show --no-all-versions "$optional_package" 2>/dev/null | sed --quiet 's/^Version: //p')
+    [[ -n "$version" ]] && dpkg --compare-versions "$version" ge 0.0.3
+}
+
 missing=()
 for package in "${packages[@]}"; do
     is_satisfied "$package" || missing+=("$package")
@@ -58,6 +67,10 @@ names=()
 for package in "${missing[@]}"; do
     names+=("$(package_name "$package")")
 done
+
+if ! is_installed "$optional_package" && optional_is_offered; then
+    names+=("$optional_package")
+fi
 
 # Mirrors and networks hiccup: one more try, then the error stands.
 install_once "${names[@]}" || { sleep 5 && install_once "${names[@]}"; }
