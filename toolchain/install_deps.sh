@@ -47,17 +47,22 @@ if ! command -v dpkg-query >/dev/null; then
     exit 3
 fi
 
-optional_is_offered() {
+install_optional() {
     local version
+    is_installed "$optional_package" && return
     version=$(apt-cache show --no-all-versions "$optional_package" 2>/dev/null | sed --quiet 's/^Version: //p')
-    [[ -n "$version" ]] && dpkg --compare-versions "$version" ge 0.0.3
+    [[ -n "$version" ]] && dpkg --compare-versions "$version" ge 0.0.3 || return 0
+    install_once "$optional_package" || echo "install_deps.sh: goes on without $optional_package" >&2
 }
 
 missing=()
 for package in "${packages[@]}"; do
     is_satisfied "$package" || missing+=("$package")
 done
-[[ ${#missing[@]} -gt 0 ]] || exit 0
+if [[ ${#missing[@]} -eq 0 ]]; then
+    install_optional
+    exit 0
+fi
 
 echo "Installing ${missing[*]}"
 if [[ " ${missing[*]} " == *" libturbojpeg0-dev "* ]]; then
@@ -68,9 +73,6 @@ for package in "${missing[@]}"; do
     names+=("$(package_name "$package")")
 done
 
-if ! is_installed "$optional_package" && optional_is_offered; then
-    names+=("$optional_package")
-fi
-
 # Mirrors and networks hiccup: one more try, then the error stands.
 install_once "${names[@]}" || { sleep 5 && install_once "${names[@]}"; }
+install_optional
