@@ -30,16 +30,17 @@ bool SameName(std::string_view a, std::string_view b) {
 }
 
 /// How many numbers a control takes; 0: one that is no array. What libcamera reads as an array and
-/// is given otherwise stops the process, and its early releases do not tell which those are.
-std::size_t ArraySize(const std::string& name) {
-    struct Array {
-        const char* name;
-        std::size_t numbers;
-    };
-    constexpr std::array kArrays{Array{"FrameDurationLimits", 2}, Array{"ColourGains", 2},
-                                 Array{"SensorBlackLevels", 4}, Array{"ColourCorrectionMatrix", 9}};
-    const auto array = std::ranges::find(kArrays, name, &Array::name);
-    return array == kArrays.end() ? 0 : array->numbers;
+/// is given otherwise stops the process. Its early releases do not tell which those are.
+template <typename Id>
+std::size_t ArraySize(const Id& id) {
+    if constexpr (requires { id.isArray(); }) {
+        return id.isArray() ? id.size() : 0;
+    } else {
+        constexpr std::array kPairs{"FrameDurationLimits", "ColourGains"};
+        if (std::ranges::find(kPairs, id.name()) != kPairs.end()) return 2;
+        if (id.name() == "SensorBlackLevels") return 4;
+        return id.name() == "ColourCorrectionMatrix" ? 9 : 0;
+    }
 }
 
 /// "1.5, 2" -> 1.5 2; true is 1, false 0. Empty if it is none of these.
@@ -166,12 +167,15 @@ Checked<Done> Plan(const ControlInfoMap& controls, const LibcameraControlWish& w
     if (found == controls.end())
         return "control " + wish.control + " is not one of this camera: " + NamesText(controls);
     const auto& [id, info] = *found;
-    const std::size_t array = ArraySize(id->name());
+    const std::size_t array = ArraySize(*id);
     const std::size_t count = std::max<std::size_t>(array, 1);
     const std::string is = "control " + id->name() + " is " + wish.value + ", must be ";
     const auto numbers = ReadNumbers(wish.value);
-    if (!numbers || numbers->size() != count)
-        return is + (count == 1 ? "a number" : std::to_string(count) + " numbers");
+    const bool any_count = array == libcamera::dynamic_extent;
+    if (!numbers || numbers->empty() || (numbers->size() != count && !any_count))
+        return is + (any_count    ? "numbers"
+                     : count == 1 ? "a number"
+                                  : std::to_string(count) + " numbers");
     const bool allowed = std::ranges::all_of(
         *numbers, [&, &range = info](double n) { return IsAllowed(id->type(), range, n); });
     if (!allowed) return is + AllowedText(info);
