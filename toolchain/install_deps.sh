@@ -14,7 +14,8 @@ packages=(
 )
 
 # Taken where the release has libcamera 0.0.3 or later: Ubuntu 22.04 has not.
-optional_package=libcamera-dev
+# The second has what its pipelines load, vimc's among them.
+optional_packages=(libcamera-dev libcamera-ipa)
 
 is_installed() {
     [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
@@ -49,10 +50,10 @@ fi
 
 install_optional() {
     local version
-    is_installed "$optional_package" && return
-    version=$(apt-cache show --no-all-versions "$optional_package" 2>/dev/null | sed --quiet 's/^Version: //p')
+    is_installed "${optional_packages[0]}" && is_installed "${optional_packages[1]}" && return
+    version=$(apt-cache show --no-all-versions "${optional_packages[0]}" 2>/dev/null | sed --quiet 's/^Version: //p')
     [[ -n "$version" ]] && dpkg --compare-versions "$version" ge 0.0.3 || return 0
-    install_once "$optional_package" || echo "install_deps.sh: goes on without $optional_package" >&2
+    install_once "${optional_packages[@]}" || echo "install_deps.sh: goes on without ${optional_packages[*]}" >&2
 }
 
 missing=()
