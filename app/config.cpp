@@ -71,7 +71,7 @@ algo::PerUnit<UnitConfig> ReadUnits(const YamlValue& value, Projection projectio
         value.Refuse("units with at most 8 cameras in total");
     }
     if (context.live_cameras > 0 && context.recorded_cameras > 0)
-        value.Refuse("units whose cameras are all live (v4l2), or none");
+        value.Refuse("units whose cameras are all live (v4l2, libcamera), or none");
     map.Finish();
     return units;
 }
@@ -112,7 +112,7 @@ std::optional<std::chrono::nanoseconds> ReadSetTolerance(const YamlValue& value,
                                                          const RigConfig& config,
                                                          const ConfigContext& context) {
     if (!value.given()) return std::nullopt;
-    if (context.live_cameras == 0) value.Refuse("absent unless the cameras are live (v4l2)");
+    if (context.live_cameras == 0) value.Refuse("absent unless the cameras are live (v4l2, libcamera)");
     const auto period = config.period.value_or(std::chrono::nanoseconds(kDefaultPeriod));
     double tolerance_ms = 1;
     // Divided, not multiplied by 1e-6: so a tolerance written like the period is within it.

@@ -49,26 +49,31 @@ struct ControlConfig {
 
 /// A camera that runs at its own pace.
 struct LiveCameraConfig {
-    std::string device{};         ///< absolute path
-    Size size_px{1280, 720};      ///< even, [64, 4096]
-    std::string format = "best";  ///< best, nv12, nm12, uyvy, yuyv, mjpeg, grey
-    int input = -1;               ///< of a device with several. [0, 63]; -1: the one selected
-    int buffers = 0;              ///< [2, 32]; 0: what the program holds and what the device needs
-    int rotation_deg = 0;         ///< 0 or 180
+    std::string device{};     ///< absolute path; kLibcamera: libcamera's id
+    Size size_px{1280, 720};  ///< even, [64, 4096]
+    /// best, nv12, nm12, uyvy, yuyv, mjpeg, grey; kLibcamera: best, nv12, uyvy, yuyv, rgb888,
+    /// bgr888, grey
+    std::string format = "best";
+    bool accept_granted_size = false;  ///< another size than asked for will do; kLibcamera only
+    int input = -1;        ///< of a device with several. [0, 63]; -1: the one selected; kV4l2 only
+    int buffers = 0;       ///< [2, 32]; 0: what the program holds and what the device needs
+    int rotation_deg = 0;  ///< 0 or 180
     bool horizontal_flip = false;
     bool vertical_flip = false;
     std::vector<ControlConfig> controls{};  ///< in the order of the file
 };
 
 struct CameraConfig {
-    enum class Source { kReplay, kSimulated, kV4l2 };
+    enum class Source { kReplay, kSimulated, kV4l2, kLibcamera };
 
     std::string name{};  ///< letters, digits and _; unique in the rig
     Source source = Source::kReplay;
     std::filesystem::path replay{};  ///< video file, image sequence or LCM log; kReplay only
-    LiveCameraConfig live{};         ///< kV4l2 only
+    LiveCameraConfig live{};         ///< kV4l2 and kLibcamera only
 
-    [[nodiscard]] bool IsLive() const { return source == Source::kV4l2; }
+    [[nodiscard]] bool IsLive() const {
+        return source == Source::kV4l2 || source == Source::kLibcamera;
+    }
 };
 
 struct UnitConfig {

@@ -2,7 +2,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/replay_colour.hpp"
+#include "drivers/frame_colour.hpp"
 #include "drivers/replay_image_list.hpp"
 #include "drivers/replay_jpeg_decoder.hpp"
 #include "drivers/replay_source.hpp"

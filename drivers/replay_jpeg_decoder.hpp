@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/replay_colour.hpp"
+#include "drivers/frame_colour.hpp"
 
 namespace hitchview::drivers {
 

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "drivers/replay_colour.hpp"
+#include "drivers/frame_colour.hpp"
 #include "drivers/replay_source.hpp"
 
 namespace hitchview::drivers {

@@ -3,10 +3,11 @@
 #include <memory>
 #include <optional>
 
-#include "drivers/v4l2_accounting.hpp"
+#include "drivers/frame_accounting.hpp"
 #include "drivers/v4l2_buffers.hpp"
 #include "drivers/v4l2_jpeg_decoder.hpp"
 #include "drivers/v4l2_negotiation.hpp"
+#include "drivers/v4l2_stamps.hpp"
 #include "hal/camera.hpp"
 
 namespace hitchview::drivers {
@@ -100,7 +101,7 @@ class V4l2Camera final : public hal::Camera {
     V4l2Negotiation negotiation_;
     V4l2Device& device_;
     V4l2Buffers buffers_;
-    V4l2Accounting accounting_;
+    FrameAccounting accounting_;
     V4l2CameraFacts facts_;
     hal::FrameFormat format_;
     std::unique_ptr<hal::FramePool> pool_;  ///< of decoded frames

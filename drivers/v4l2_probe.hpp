@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/v4l2_accounting.hpp"
+#include "drivers/v4l2_stamps.hpp"
 #include "drivers/v4l2_controls.hpp"
 #include "drivers/v4l2_kernel.hpp"
 #include "drivers/v4l2_offers.hpp"

@@ -13,6 +13,10 @@ packages=(
     iproute2 util-linux qemu-user
 )
 
+# Taken where the release has libcamera 0.0.3 or later: Ubuntu 22.04 has not.
+# The second has what its pipelines load, vimc's among them.
+optional_packages=(libcamera-dev libcamera-ipa)
+
 is_installed() {
     [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
 }
@@ -44,11 +48,22 @@ if ! command -v dpkg-query >/dev/null; then
     exit 3
 fi
 
+install_optional() {
+    local version
+    is_installed "${optional_packages[0]}" && is_installed "${optional_packages[1]}" && return
+    version=$(apt-cache show --no-all-versions "${optional_packages[0]}" 2>/dev/null | sed --quiet 's/^Version: //p')
+    [[ -n "$version" ]] && dpkg --compare-versions "$version" ge 0.0.3 || return 0
+    install_once "${optional_packages[@]}" || echo "install_deps.sh: goes on without ${optional_packages[*]}" >&2
+}
+
 missing=()
 for package in "${packages[@]}"; do
     is_satisfied "$package" || missing+=("$package")
 done
-[[ ${#missing[@]} -gt 0 ]] || exit 0
+if [[ ${#missing[@]} -eq 0 ]]; then
+    install_optional
+    exit 0
+fi
 
 echo "Installing ${missing[*]}"
 if [[ " ${missing[*]} " == *" libturbojpeg0-dev "* ]]; then
@@ -61,3 +76,4 @@ done
 
 # Mirrors and networks hiccup: one more try, then the error stands.
 install_once "${names[@]}" || { sleep 5 && install_once "${names[@]}"; }
+install_optional

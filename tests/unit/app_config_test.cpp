@@ -78,6 +78,26 @@ TEST_F(ConfigTest, ATractorWithoutItsTrailerIsARig) {
     EXPECT_EQ(config.value().canvas.size_px.height_px, 360);
 }
 
+TEST_F(ConfigTest, ALibcameraCameraIsLive) {
+    const auto config = Load(
+        "schema: 1\ncanvas: {projection: plane, size_px: [640, 360]}\nunits: {tractor: "
+        "{cameras: [{name: front, source: {libcamera: platform/vimc.0 Sensor B, size_px: [960, "
+        "540], format: yuyv, accept_granted_size: true, buffers: 9, rotation_deg: 180, "
+        "controls: {brightness: 0.2, ColourGains: '1.5 2'}}}]}}\n");
+    ASSERT_TRUE(config.ok()) << config.error();
+    const CameraConfig& camera = config.value().units[Unit::kTractor].cameras.at(0);
+    EXPECT_EQ(camera.source, CameraConfig::Source::kLibcamera);
+    EXPECT_TRUE(camera.IsLive());
+    EXPECT_EQ(camera.live.device, "platform/vimc.0 Sensor B");
+    EXPECT_EQ(camera.live.size_px.width_px, 960);
+    EXPECT_EQ(camera.live.format, "yuyv");
+    EXPECT_TRUE(camera.live.accept_granted_size);
+    EXPECT_EQ(camera.live.buffers, 9);
+    EXPECT_EQ(camera.live.rotation_deg, 180);
+    ASSERT_EQ(camera.live.controls.size(), 2U);
+    EXPECT_EQ(camera.live.controls[1].value, "1.5 2");
+}
+
 TEST_F(ConfigTest, WhatTheFileSaysReplacesTheDefaults) {
     const auto config =
         Load(kPlane +
@@ -246,9 +266,23 @@ INSTANTIATE_TEST_SUITE_P(
                 "rig.yaml:3: units.tractor.cameras[0].source is missing, must be a map"},
         BadFile{Plane(kCanvas, "{cameras: [{name: a, source: {rtsp: a}}]}"),
                 "rig.yaml:3: units.tractor.cameras[0].source is a map, must be a map with exactly "
-                "one of simulated, replay and v4l2\n"
+                "one of simulated, replay, v4l2 and libcamera\n"
                 "rig.yaml:3: units.tractor.cameras[0].source.rtsp is no key, must be one of "
-                "simulated, replay, v4l2"},
+                "simulated, replay, v4l2, libcamera"},
+        BadFile{Plane(kCanvas, "{cameras: [{name: a, source: {v4l2: a}}]}"),
+                "rig.yaml:3: units.tractor.cameras[0].source.v4l2 is a, must be the absolute path "
+                "of a device, best one of /dev/v4l/by-path"},
+        BadFile{Plane(kCanvas, "{cameras: [{name: a, source: {v4l2: /dev/a, libcamera: a}}]}"),
+                "rig.yaml:3: units.tractor.cameras[0].source is a map, must be a map with exactly "
+                "one of simulated, replay, v4l2 and libcamera"},
+        BadFile{Plane(kCanvas, "{cameras: [{name: a, source: {libcamera: a, format: mjpeg}}]}"),
+                "rig.yaml:3: units.tractor.cameras[0].source.format is mjpeg, must be one of best, "
+                "nv12, uyvy, yuyv, rgb888, bgr888, grey"},
+        BadFile{Plane(kCanvas, "{cameras: [{name: a, source: {libcamera: a, input: 1}}]}"),
+                "rig.yaml:3: units.tractor.cameras[0].source.input is no key, must be one of "
+                "simulated, "
+                "replay, v4l2, libcamera, size_px, buffers, rotation_deg, flip, controls, format, "
+                "accept_granted_size"},
         BadFile{Plane(kCanvas, "{cameras: [{name: a, source: {simulated: false}}]}"),
                 "rig.yaml:3: units.tractor.cameras[0].source.simulated is false, must be true"},
         BadFile{Plane(kCanvas,

@@ -8,10 +8,13 @@
 
 namespace hitchview::drivers {
 
-/// Packed blue, green, red bytes of a decoded picture; at least as large as the frame it fills.
+enum class ChannelOrder : std::uint8_t { kBlueGreenRed, kRedGreenBlue };
+
+/// Three bytes a pixel; at least as large as the frame it fills.
 struct BgrPicture {
     const std::uint8_t* data;
     std::ptrdiff_t stride_bytes;
+    ChannelOrder order = ChannelOrder::kBlueGreenRed;  ///< in memory
 };
 
 /// Planes of a decoded JPEG. Chroma of pixel (x, y) is at (x >> shift_x, y >> shift_y).

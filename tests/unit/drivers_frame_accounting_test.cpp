@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 #include <linux/videodev2.h>
 
-#include "drivers/v4l2_accounting.hpp"
+#include "drivers/frame_accounting.hpp"
+#include "drivers/v4l2_stamps.hpp"
 
 namespace hitchview::drivers {
 namespace {
@@ -10,7 +11,7 @@ using std::chrono::milliseconds;
 
 constexpr hal::Instant kPeriod = milliseconds(40);
 
-class V4l2AccountingTest : public testing::Test {
+class FrameAccountingTest : public testing::Test {
  protected:
     /// Frame `sequence` with its stamp in milliseconds; the sequence given out, -1 if corrupted.
     std::int64_t Accept(std::uint32_t sequence, int stamp_ms, bool damaged = false) {
@@ -18,30 +19,30 @@ class V4l2AccountingTest : public testing::Test {
         return header ? static_cast<std::int64_t>(header.value().sequence) : -1;
     }
 
-    V4l2Accounting accounting_{kPeriod};
+    FrameAccounting accounting_{kPeriod};
 };
 
-TEST_F(V4l2AccountingTest, FramesInOrderLackNothing) {
+TEST_F(FrameAccountingTest, FramesInOrderLackNothing) {
     for (int i = 0; i < 10; ++i) EXPECT_EQ(Accept(7 + i, 40 * i), i);
     EXPECT_EQ(accounting_.counts().lost, 0U);
     EXPECT_EQ(accounting_.counts().lost_unnumbered, 0U);
 }
 
-TEST_F(V4l2AccountingTest, AGapInTheSequenceIsLostFramesAndStaysAGap) {
+TEST_F(FrameAccountingTest, AGapInTheSequenceIsLostFramesAndStaysAGap) {
     EXPECT_EQ(Accept(100, 0), 0);
     EXPECT_EQ(Accept(104, 160), 4);
     EXPECT_EQ(accounting_.counts().lost, 3U);
     EXPECT_EQ(accounting_.counts().lost_unnumbered, 0U);
 }
 
-TEST_F(V4l2AccountingTest, TheSequenceMayWrap) {
+TEST_F(FrameAccountingTest, TheSequenceMayWrap) {
     EXPECT_EQ(Accept(0xFFFFFFFEU, 0), 0);
     EXPECT_EQ(Accept(0xFFFFFFFFU, 40), 1);
     EXPECT_EQ(Accept(1, 120), 3);
     EXPECT_EQ(accounting_.counts().lost, 1U);
 }
 
-TEST_F(V4l2AccountingTest, AStepInTimeWithoutAGapIsUnnumberedLoss) {
+TEST_F(FrameAccountingTest, AStepInTimeWithoutAGapIsUnnumberedLoss) {
     Accept(0, 0);
     Accept(1, 60);  // exactly 1.5 periods: late, not lost
     EXPECT_EQ(accounting_.counts().lost_unnumbered, 0U);
@@ -50,7 +51,7 @@ TEST_F(V4l2AccountingTest, AStepInTimeWithoutAGapIsUnnumberedLoss) {
     EXPECT_EQ(accounting_.counts().lost, 0U);
 }
 
-TEST_F(V4l2AccountingTest, OfADeviceThatDoesNotNumberTheStampsTell) {
+TEST_F(FrameAccountingTest, OfADeviceThatDoesNotNumberTheStampsTell) {
     EXPECT_EQ(Accept(0, 0), 0);
     EXPECT_EQ(Accept(0, 40), 1);
     EXPECT_EQ(Accept(0, 160), 4);
@@ -58,7 +59,7 @@ TEST_F(V4l2AccountingTest, OfADeviceThatDoesNotNumberTheStampsTell) {
     EXPECT_EQ(accounting_.counts().lost, 0U);
 }
 
-TEST_F(V4l2AccountingTest, ADamagedFrameIsCountedAndLeavesNoLoss) {
+TEST_F(FrameAccountingTest, ADamagedFrameIsCountedAndLeavesNoLoss) {
     Accept(0, 0);
     EXPECT_EQ(Accept(1, 40, true), -1);
     EXPECT_EQ(Accept(2, 80), 2);
@@ -66,7 +67,7 @@ TEST_F(V4l2AccountingTest, ADamagedFrameIsCountedAndLeavesNoLoss) {
     EXPECT_EQ(accounting_.counts().lost + accounting_.counts().lost_unnumbered, 0U);
 }
 
-TEST_F(V4l2AccountingTest, AStampThatStepsBackIsRefusedOnce) {
+TEST_F(FrameAccountingTest, AStampThatStepsBackIsRefusedOnce) {
     Accept(0, 1000);
     EXPECT_EQ(Accept(1, 500), -1);
     EXPECT_EQ(Accept(2, 540), 2);
@@ -74,7 +75,7 @@ TEST_F(V4l2AccountingTest, AStampThatStepsBackIsRefusedOnce) {
     EXPECT_EQ(accounting_.counts().lost_unnumbered, 0U);
 }
 
-TEST_F(V4l2AccountingTest, AStreamThatStartsAgainGoesOnWithoutAGap) {
+TEST_F(FrameAccountingTest, AStreamThatStartsAgainGoesOnWithoutAGap) {
     Accept(50, 0);
     accounting_.Restart();
     EXPECT_EQ(Accept(3, 5000), 1);

@@ -1,4 +1,4 @@
-#include "drivers/replay_colour.hpp"
+#include "drivers/frame_colour.hpp"
 
 #include <algorithm>
 
@@ -15,10 +15,12 @@ constexpr int kCbR = -11059;
 constexpr int kCrB = -5329;
 constexpr int kCrG = -27439;
 
+// kBlue: which byte of a pixel is blue; the other end is red.
+template <int kBlue>
 void LumaRow(const std::uint8_t* bgr, int width_px, std::uint8_t* luma) {
     for (int x = 0; x < width_px; ++x, bgr += 3) {
         luma[x] = static_cast<std::uint8_t>(
-            (kLumaB * bgr[0] + kLumaG * bgr[1] + kLumaR * bgr[2] + kHalf) >> 16);
+            (kLumaB * bgr[kBlue] + kLumaG * bgr[1] + kLumaR * bgr[2 - kBlue] + kHalf) >> 16);
     }
 }
 
@@ -27,12 +29,14 @@ std::uint8_t Chroma(int sum) {
     return static_cast<std::uint8_t>(std::clamp((sum + (128 << 18) + (1 << 17)) >> 18, 0, 255));
 }
 
+template <int kBlue>
 void ChromaRow(const std::uint8_t* upper, const std::uint8_t* lower, int width_px,
                std::uint8_t* chroma) {
+    constexpr int kRed = 2 - kBlue;
     for (int x = 0; x < width_px; x += 2, upper += 6, lower += 6) {
-        const int b = upper[0] + upper[3] + lower[0] + lower[3];
+        const int b = upper[kBlue] + upper[kBlue + 3] + lower[kBlue] + lower[kBlue + 3];
         const int g = upper[1] + upper[4] + lower[1] + lower[4];
-        const int r = upper[2] + upper[5] + lower[2] + lower[5];
+        const int r = upper[kRed] + upper[kRed + 3] + lower[kRed] + lower[kRed + 3];
         chroma[x] = Chroma(kHalf * b + kCbG * g + kCbR * r);
         chroma[x + 1] = Chroma(kCrB * b + kCrG * g + kHalf * r);
     }
@@ -57,19 +61,29 @@ void ChromaRow(const YuvPicture& picture, int y, int width_px, std::uint8_t* chr
     }
 }
 
-}  // namespace
-
-void ToNv12(const BgrPicture& picture, const hal::FrameFormat& format,
-            std::span<std::uint8_t> nv12) {
+template <int kBlue>
+void PackedToNv12(const BgrPicture& picture, const hal::FrameFormat& format,
+                  std::span<std::uint8_t> nv12) {
     const int width_px = format.width_px;
     std::uint8_t* luma = nv12.data();
     std::uint8_t* chroma = luma + std::ptrdiff_t{width_px} * format.height_px;
     for (int y = 0; y < format.height_px; y += 2) {
         const std::uint8_t* upper = picture.data + y * picture.stride_bytes;
         const std::uint8_t* lower = upper + picture.stride_bytes;
-        LumaRow(upper, width_px, luma + std::ptrdiff_t{y} * width_px);
-        LumaRow(lower, width_px, luma + std::ptrdiff_t{y + 1} * width_px);
-        ChromaRow(upper, lower, width_px, chroma + std::ptrdiff_t{y / 2} * width_px);
+        LumaRow<kBlue>(upper, width_px, luma + std::ptrdiff_t{y} * width_px);
+        LumaRow<kBlue>(lower, width_px, luma + std::ptrdiff_t{y + 1} * width_px);
+        ChromaRow<kBlue>(upper, lower, width_px, chroma + std::ptrdiff_t{y / 2} * width_px);
+    }
+}
+
+}  // namespace
+
+void ToNv12(const BgrPicture& picture, const hal::FrameFormat& format,
+            std::span<std::uint8_t> nv12) {
+    if (picture.order == ChannelOrder::kBlueGreenRed) {
+        PackedToNv12<0>(picture, format, nv12);
+    } else {
+        PackedToNv12<2>(picture, format, nv12);
     }
 }
 

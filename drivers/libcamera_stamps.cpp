@@ -1,0 +1,25 @@
+#include "drivers/libcamera_stamps.hpp"
+
+#include <ctime>
+
+namespace hitchview::drivers {
+namespace {
+
+hal::Instant Read(clockid_t clock) {
+    timespec time{};
+    clock_gettime(clock, &time);
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+}  // namespace
+
+BootClocks BootClocks::Now() {
+    return {Read(CLOCK_MONOTONIC), Read(CLOCK_BOOTTIME)};
+}
+
+hal::Instant LibcameraStampClock::ToMonotonic(hal::Instant stamp, const BootClocks& now) {
+    boottime_ = boottime_ || stamp > now.monotonic;
+    return boottime_ ? stamp - (now.boottime - now.monotonic) : stamp;
+}
+
+}  // namespace hitchview::drivers
