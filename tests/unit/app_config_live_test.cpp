@@ -129,12 +129,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadSource{"v4l2: /dev/video0, controls: {gain: [1]}",
                   ".controls.gain is a list of 1, must be text"},
         BadSource{"v4l2: /dev/video0, rate_hz: 30",
-                  ".rate_hz is no key, must be one of simulated, replay, v4l2, size_px, format, "
-                  "input, buffers, rotation_deg, flip, controls"},
-        BadSource{"v4l2: /dev/video0, replay: a.avi",
-                  " is a map, must be a map with exactly one of simulated, replay and v4l2"},
+                  ".rate_hz is no key, must be one of simulated, replay, v4l2, libcamera, "
+                  "size_px, buffers, rotation_deg, flip, controls, format, input"},
+        BadSource{
+            "v4l2: /dev/video0, replay: a.avi",
+            " is a map, must be a map with exactly one of simulated, replay, v4l2 and libcamera"},
         BadSource{"replay: a.avi, size_px: [640, 480]",
-                  ".size_px is no key, must be one of simulated, replay, v4l2"}));
+                  ".size_px is no key, must be one of simulated, replay, v4l2, libcamera"}));
 
 TEST_F(ConfigLiveTest, OneDeviceIsNotTwoCameras) {
     EXPECT_EQ(Refusal("{name: a, source: {v4l2: /dev/video0}}, "
@@ -153,7 +154,8 @@ TEST_F(ConfigLiveTest, LiveAndRecordedCamerasDoNotMix) {
     for (const std::string other : {"{replay: b.avi}", "{simulated: true}"}) {
         EXPECT_EQ(
             Refusal("{name: a, source: {v4l2: /dev/video0}}, {name: b, source: " + other + "}"),
-            "rig.yaml:4: units is a map, must be units whose cameras are all live (v4l2), "
+            "rig.yaml:4: units is a map, must be units whose cameras are all live (v4l2, "
+            "libcamera), "
             "or none");
     }
 }
@@ -165,7 +167,7 @@ TEST_F(ConfigLiveTest, ASetMayNotBeLooserThanAPeriod) {
               "rig.yaml:5: set_tolerance_ms is 0.5, must be 1 to 33.333333");
     EXPECT_EQ(RefusalOf("replay: a.avi", "set_tolerance_ms: 5\n"),
               "rig.yaml:5: set_tolerance_ms is 5, must be absent unless the cameras are live "
-              "(v4l2)");
+              "(v4l2, libcamera)");
 }
 
 TEST_F(ConfigLiveTest, ASetMayBeAsLooseAsAPeriod) {
