@@ -8,6 +8,7 @@
 #include "app/bench_memory.hpp"
 #include "app/bench_run.hpp"
 #include "app/bench_table.hpp"
+#include "app/config.hpp"
 #include "app/evaluation_statistics.hpp"
 #include "app/report.hpp"
 #include "app/scenario_frames.hpp"
@@ -23,7 +24,6 @@ using nlohmann::json;
 
 constexpr int kStopped = 1;
 constexpr int kMachineFailed = 3;
-constexpr hal::Instant kPeriod{33'333'333};
 constexpr int kScalingFrames = 40;
 /// In a run without lookahead: one is worked on, one waits, and four are being filled.
 constexpr int kHeldSets = 6;
@@ -55,7 +55,7 @@ class Bench {
         const int height = geometry.canvas.height_px;
         const std::size_t panorama_bytes =
             hal::FrameBytes({width, height, hal::PixelFormat::kI420, hal::Range::kFull});
-        const BenchRunOptions run{options_.workers, options_.frames, kPeriod};
+        const BenchRunOptions run{options_.workers, options_.frames, kDefaultPeriod};
         std::map<std::string, std::vector<double>> rounds;
         for (int i = 0; i < (options_.quick ? 1 : options_.rounds); ++i) {
             const double memcpy_ms = MemcpyMs(frames, panorama_bytes);
