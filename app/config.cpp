@@ -112,7 +112,8 @@ std::optional<std::chrono::nanoseconds> ReadSetTolerance(const YamlValue& value,
                                                          const RigConfig& config,
                                                          const ConfigContext& context) {
     if (!value.given()) return std::nullopt;
-    if (context.live_cameras == 0) value.Refuse("absent unless the cameras are live (v4l2, libcamera)");
+    if (context.live_cameras == 0)
+        value.Refuse("absent unless the cameras are live (v4l2, libcamera)");
     const auto period = config.period.value_or(std::chrono::nanoseconds(kDefaultPeriod));
     double tolerance_ms = 1;
     // Divided, not multiplied by 1e-6: so a tolerance written like the period is within it.

@@ -226,6 +226,11 @@ struct RigConfig {
     std::optional<CanConfig> can{};
     PublishConfig publish{};
 
+    /// Its cameras run at their own pace: all of a rig's do, or none.
+    [[nodiscard]] bool IsLive() const {
+        return HasUnit(algo::Unit::kTractor) &&
+               units[algo::Unit::kTractor].cameras.front().IsLive();
+    }
     [[nodiscard]] bool HasUnit(algo::Unit unit) const { return !units[unit].cameras.empty(); }
 };
 

@@ -91,9 +91,7 @@ void ReadCameraSource(const YamlValue& value, ConfigContext& context, CameraConf
     const YamlValue libcamera = map["libcamera"];
     if (simulated.given() + replay.given() + v4l2.given() + libcamera.given() != 1)
         value.Refuse("a map with exactly one of simulated, replay, v4l2 and libcamera");
-    bool is_simulated = true;
-    simulated.Read(is_simulated);
-    if (!is_simulated) simulated.Refuse("true");
+    ReadTrue(simulated);
     ReadPath(replay, context, camera.replay);
     if (v4l2.given()) {
         ReadV4l2(v4l2, map, camera);

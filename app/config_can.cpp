@@ -46,9 +46,7 @@ void ReadCanSource(const YamlValue& value, const ConfigContext& context, CanConf
     map.Finish();
     if (simulated.given() + candump.given() + socketcan.given() != 1)
         value.Refuse("a map with either simulated, candump or socketcan");
-    bool is_simulated = true;
-    simulated.Read(is_simulated);
-    if (!is_simulated) simulated.Refuse("true");
+    ReadTrue(simulated);
     ReadPath(candump, context, can.candump);
     ReadInterface(socketcan, can.interface);
     if (candump.given()) can.source = CanConfig::Source::kCandump;

@@ -72,20 +72,10 @@ void ReadSize(const YamlValue& value, const Range<int>& width, const Range<int>&
     items[1].Read(height, out.height_px);
 }
 
-bool ReadSource(const YamlValue& value, const std::string& file_key, const ConfigContext& context,
-                std::filesystem::path& path) {
-    YamlMap map = value.Map();
-    const YamlValue simulated = map["simulated"];
-    const YamlValue file = map[file_key];
-    map.Finish();
-    if (simulated.given() == file.given()) {
-        value.Refuse("a map with either simulated or " + file_key);
-    }
-    bool is_simulated = true;
-    simulated.Read(is_simulated);
-    if (!is_simulated) simulated.Refuse("true");
-    ReadPath(file, context, path);
-    return file.given();
+void ReadTrue(const YamlValue& value) {
+    bool is_true = true;
+    value.Read(is_true);
+    if (!is_true) value.Refuse("true");
 }
 
 SimulationConfig ReadSimulation(const YamlValue& value, const ConfigContext& context) {

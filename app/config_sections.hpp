@@ -26,10 +26,8 @@ void ReadPath(const calib::YamlValue& value, const ConfigContext& context,
               std::filesystem::path& out);
 void ReadSize(const calib::YamlValue& value, const calib::Range<int>& width,
               const calib::Range<int>& height, Size& out);
-/// A source is a map with exactly one of two keys: the value `true` of `simulated`, or a path.
-/// Returns whether it is the path.
-bool ReadSource(const calib::YamlValue& value, const std::string& file_key,
-                const ConfigContext& context, std::filesystem::path& path);
+/// Of a key that is a choice by being there: if given, it must be `true`.
+void ReadTrue(const calib::YamlValue& value);
 
 /// In config_camera.cpp.
 CameraConfig ReadCamera(const calib::YamlValue& value, ConfigContext& context);

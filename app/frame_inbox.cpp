@@ -88,11 +88,4 @@ CameraPace FrameInbox::pace(std::size_t camera) const {
     return places_[camera].pace;
 }
 
-CameraMask FrameInbox::connected() const {
-    const std::lock_guard lock(mutex_);
-    CameraMask connected;
-    for (std::size_t i = 0; i < kMaxCameras; ++i) connected[i] = places_[i].connected;
-    return connected;
-}
-
 }  // namespace hitchview::app

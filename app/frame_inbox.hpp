@@ -60,7 +60,6 @@ class FrameInbox {
 
     [[nodiscard]] InboxCounts counts(std::size_t camera) const;
     [[nodiscard]] CameraPace pace(std::size_t camera) const;
-    [[nodiscard]] CameraMask connected() const;
 
  private:
     struct Place {

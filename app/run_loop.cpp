@@ -147,6 +147,9 @@ void ArticulationSummary::Add(const algo::Articulation& articulation) {
 
 hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& options,
                                 const std::atomic<bool>& stop, const ShownHook& hook) {
+    if (config.IsLive() && !options.realtime)
+        return config.file.string() +
+               ": its cameras are live: use run; the other verbs need recordings";
     auto calibration = Calibration(config);
     if (!calibration) return calibration.error();
     if (options.realtime) {
@@ -157,9 +160,6 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     const int held = motion_options.lookahead_frames + 2;
     auto board = Board::Open(config, held);
     if (!board) return board.error();
-    if ((*board)->live() != nullptr && !options.realtime)
-        return config.file.string() +
-               ": its cameras are live: use run; the other verbs need recordings";
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
     if (!rig) return rig.error();
 

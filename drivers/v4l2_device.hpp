@@ -32,7 +32,6 @@ class V4l2Device {
     /// Not blocking. kNotFound: nothing is there; kUnsupported: it is no camera that streams.
     V4l2Result<hal::Done> Open(const char* path);
     void Close();
-    [[nodiscard]] bool is_open() const { return file_ >= 0; }
     [[nodiscard]] int file() const { return file_; }
     [[nodiscard]] V4l2Kernel& kernel() const { return *kernel_; }
 
