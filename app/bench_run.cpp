@@ -51,6 +51,7 @@ class Display final : public hal::Publisher {
     hal::Result<hal::Done> DoPublish(const hal::HitchAngle& /*angle*/) override {
         return hal::Done{};
     }
+    hal::Result<hal::Done> DoPublish(const hal::Event& /*event*/) override { return hal::Done{}; }
 
     const hal::Clock& clock_;
     hal::Instant newest_{};
@@ -117,7 +118,7 @@ class BenchDrive {
     FrameSet Next() { return frames_.Set(next_++, clock_.Now()); }
 
     PanoramaPublisher OpenPublisher(hal::Publisher& display, bool drop_when_late) {
-        return PanoramaPublisher(display, clock_, nullptr, pipeline_.format(),
+        return PanoramaPublisher(display, clock_, {}, pipeline_.format(),
                                  {.jpeg = {.budget_bytes = kMaxJpegBytes},
                                   .calibration_id = {},
                                   .drop_when_late = drop_when_late,

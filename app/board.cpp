@@ -207,7 +207,7 @@ void Board::StartSets(const RigConfig& config) {
         sets_ = std::make_unique<RecordedFrameSynchronizer>(cameras_);
         return;
     }
-    auto live = std::make_unique<LiveFrameSynchronizer>(live_cameras_, *clock_, period_,
+    auto live = std::make_unique<LiveFrameSynchronizer>(live_cameras_, events_, *clock_, period_,
                                                         config.set_tolerance.value_or(period_));
     live_ = live.get();
     sets_ = std::move(live);
@@ -253,6 +253,7 @@ hal::Checked<std::unique_ptr<hal::Publisher>> Board::OpenPublisher(const Publish
                                        .panorama_channel = config.panorama_channel,
                                        .status_channel = config.status_channel,
                                        .hitch_angle_channel = config.hitch_angle_channel,
+                                       .event_channel = config.event_channel,
                                        .max_image_bytes = config.max_bytes},
                                       *clock_);
     if (!publisher) return publisher.error();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/config.hpp"
+#include "app/event_queue.hpp"
 #include "app/live_frame_synchronizer.hpp"
 #include "app/recorded_frame_synchronizer.hpp"
 #include "app/rig_geometry.hpp"
@@ -34,6 +35,8 @@ class Board {
     /// The same where the cameras run at their own pace, otherwise null: recordings and simulations
     /// deliver as fast as they are read.
     [[nodiscard]] LiveFrameSynchronizer* live() { return live_; }
+    /// What happens to its devices, and for whoever else has something to tell.
+    [[nodiscard]] EventQueue& events() { return events_; }
     /// Null when the rig names no CAN bus.
     [[nodiscard]] hal::CanBus* can_bus() { return can_bus_.get(); }
     /// Whether its frames are received at moments of this machine's clock, not of a recording.
@@ -63,7 +66,8 @@ class Board {
     std::unique_ptr<hal::CanBus> can_bus_;
     bool is_can_live_ = false;
     hal::Instant period_{};
-    std::unique_ptr<FrameSynchronizer> sets_;  // last: it uses cameras and clock
+    EventQueue events_;
+    std::unique_ptr<FrameSynchronizer> sets_;  // last: it uses cameras, events and clock
     LiveFrameSynchronizer* live_ = nullptr;
 };
 

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
+#include <optional>
 #include <string>
 #include <thread>
 
+#include "app/event_queue.hpp"
 #include "app/frame_inbox.hpp"
 #include "hal/camera.hpp"
 #include "hal/clock.hpp"
@@ -13,15 +14,15 @@ namespace hitchview::app {
 
 /// Carries one live camera's frames to the inbox on a thread of its own, named `cam-<name>`, and
 /// has the camera reopened when it is gone, with pauses from kFirstPause that double up to
-/// kLongestPause. Says on stderr when a camera goes and comes back. The camera, the inbox and the
-/// clock must outlive it. Takes no memory after construction.
+/// kLongestPause until it gives a frame. Says on stderr and as an event when a camera goes, and
+/// when it gives frames again. All references must outlive it. Takes no memory after construction.
 class CaptureThread {
  public:
     static constexpr std::chrono::milliseconds kFirstPause{100};
     static constexpr std::chrono::milliseconds kLongestPause{500};
 
     CaptureThread(hal::Camera& camera, std::string name, std::size_t index, FrameInbox& inbox,
-                  hal::Clock& clock);
+                  EventQueue& events, hal::Clock& clock);
     /// Waits for the camera's answer, at most 100 ms, or the end of a pause.
     ~CaptureThread();
     CaptureThread(const CaptureThread&) = delete;
@@ -29,13 +30,19 @@ class CaptureThread {
 
  private:
     void Work();
+    void NoteFrame(hal::Instant now);
+    void NoteLost(hal::Instant now);
+    void Tell(hal::EventCode code, hal::Instant when, const hal::EventText& text);
     void BringBack();
 
     hal::Camera& camera_;
     const std::string name_;
     const std::size_t index_;
     FrameInbox& inbox_;
+    EventQueue& events_;
     hal::Clock& clock_;
+    std::optional<hal::Instant> lost_at_;  ///< while it gives no frames
+    hal::Instant pause_{};                 ///< before it is reopened
     std::atomic<bool> stop_{false};
     std::thread thread_;  // last: it uses all of the above
 };

@@ -192,6 +192,7 @@ struct PublishConfig {
     std::string panorama_channel = "PANORAMA";  ///< LCM channel, at most 63 characters
     std::string status_channel = "PANORAMA_STATUS";
     std::string hitch_angle_channel = "HITCH_ANGLE";
+    std::string event_channel = "PANORAMA_EVENT";
     int jpeg_quality = 85;   ///< [30, 95]
     int max_bytes = 150000;  ///< of one compressed panorama. [20000, 4000000]
 };

@@ -6,8 +6,9 @@
 
 namespace hitchview::app {
 
-LiveFrameSynchronizer::LiveFrameSynchronizer(std::vector<LiveCamera> cameras, hal::Clock& clock,
-                                             hal::Instant period, hal::Instant tolerance)
+LiveFrameSynchronizer::LiveFrameSynchronizer(std::vector<LiveCamera> cameras, EventQueue& events,
+                                             hal::Clock& clock, hal::Instant period,
+                                             hal::Instant tolerance)
     : cameras_(std::move(cameras)),
       clock_(clock),
       period_(period),
@@ -16,7 +17,7 @@ LiveFrameSynchronizer::LiveFrameSynchronizer(std::vector<LiveCamera> cameras, ha
     HV_EXPECT(cameras_.size() <= kMaxCameras);
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
         threads_.push_back(std::make_unique<CaptureThread>(*cameras_[i].camera, cameras_[i].name, i,
-                                                           inbox_, clock_));
+                                                           inbox_, events, clock_));
     }
 }
 

@@ -50,9 +50,9 @@ class LiveFrameSynchronizer final : public FrameSynchronizer {
  public:
     static constexpr int kPatience = 3;  ///< periods after which a silent camera is not awaited
 
-    /// Starts to capture. `cameras`, at most kMaxCameras, and `clock` must outlive it.
-    LiveFrameSynchronizer(std::vector<LiveCamera> cameras, hal::Clock& clock, hal::Instant period,
-                          hal::Instant tolerance);
+    /// Starts to capture. `cameras`, at most kMaxCameras, `events` and `clock` must outlive it.
+    LiveFrameSynchronizer(std::vector<LiveCamera> cameras, EventQueue& events, hal::Clock& clock,
+                          hal::Instant period, hal::Instant tolerance);
     ~LiveFrameSynchronizer() override;
 
     [[nodiscard]] const SetCounts& counts() const { return counts_; }

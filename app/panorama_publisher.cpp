@@ -15,11 +15,11 @@ void CopyPacked(const hal::FrameView& picture, std::span<std::uint8_t> to) {
 }  // namespace
 
 PanoramaPublisher::PanoramaPublisher(hal::Publisher& publisher, const hal::Clock& clock,
-                                     TelemetryThread* telemetry, const hal::FrameFormat& format,
+                                     const SentBeside& beside, const hal::FrameFormat& format,
                                      const PanoramaPublisherOptions& options)
     : publisher_(publisher),
       clock_(clock),
-      telemetry_(telemetry),
+      beside_(beside),
       options_(options),
       pool_(format, options.drop_when_late ? kBuffersInTime : int{kBuffers}),
       encoder_(format, options.jpeg),
@@ -65,6 +65,7 @@ void PanoramaPublisher::Work() {
             free_.Append(filled->slot);
         }
         SendHitchAngles();
+        SendEvents();
     }
 }
 
@@ -108,12 +109,17 @@ void PanoramaPublisher::SendStatus(const Item& item) {
 }
 
 void PanoramaPublisher::SendHitchAngles() {
-    if (telemetry_ == nullptr) return;
-    while (auto angle = telemetry_->Take()) {
+    if (beside_.telemetry == nullptr) return;
+    while (auto angle = beside_.telemetry->Take()) {
         if (!options_.live_telemetry)
             angle->received_at += hal::Instant(start_ns_.load(std::memory_order_acquire));
         Count(publisher_.Publish(*angle));
     }
+}
+
+void PanoramaPublisher::SendEvents() {
+    if (beside_.events == nullptr) return;
+    while (const auto event = beside_.events->Take()) Count(publisher_.Publish(*event));
 }
 
 void PanoramaPublisher::Count(const hal::Result<hal::Done>& outcome) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <thread>
 
+#include "app/event_queue.hpp"
 #include "app/jpeg_encoder.hpp"
 #include "app/stage_times.hpp"
 #include "app/telemetry_thread.hpp"
@@ -27,15 +28,20 @@ struct PanoramaPublisherOptions {
     int threads = 1;
 };
 
+/// What is sent beside the panoramas; null: nothing of the kind.
+struct SentBeside {
+    TelemetryThread* telemetry = nullptr;
+    EventQueue* events = nullptr;
+};
+
 /// Compresses and sends panoramas off the deadline, on a thread of its own (`publish`), which
-/// `publish-1` ... help to compress, and hands
-/// on the hitch angles that have come meanwhile. Memory is taken at construction.
+/// `publish-1` ... help to compress, and hands on the hitch angles and events that have come
+/// meanwhile. Memory is taken at construction.
 class PanoramaPublisher {
  public:
-    /// `telemetry` may be null. All references must outlive this.
-    PanoramaPublisher(hal::Publisher& publisher, const hal::Clock& clock,
-                      TelemetryThread* telemetry, const hal::FrameFormat& format,
-                      const PanoramaPublisherOptions& options);
+    /// All that is referred to must outlive this.
+    PanoramaPublisher(hal::Publisher& publisher, const hal::Clock& clock, const SentBeside& beside,
+                      const hal::FrameFormat& format, const PanoramaPublisherOptions& options);
     ~PanoramaPublisher();
 
     /// Before the telemetry first lets go of an angle, and when its pace slips: moment of the clock
@@ -81,11 +87,12 @@ class PanoramaPublisher {
     void SendImage(const Item& item, std::span<const std::uint8_t> jpeg);
     void SendStatus(const Item& item);
     void SendHitchAngles();
+    void SendEvents();
     void Count(const hal::Result<hal::Done>& outcome);
 
     hal::Publisher& publisher_;
     const hal::Clock& clock_;
-    TelemetryThread* telemetry_;
+    SentBeside beside_;
     PanoramaPublisherOptions options_;
     hal::FramePool pool_;
     hal::BlockingRing<hal::FramePool::Slot, kBuffers> free_;

@@ -152,6 +152,13 @@ json Live(const RunSummary& run) {
             {"cameras", LiveCameras(*run.live)}};
 }
 
+json Events(const EventCounts& counts) {
+    json events{{"refused", counts.refused}};
+    for (std::size_t i = 0; i < hal::kEventCodes.size(); ++i)
+        events[ToString(hal::kEventCodes[i])] = counts.happened[i];
+    return events;
+}
+
 /// Null for a rig that cannot tell it.
 json Articulation(const RunSummary& run) {
     if (!run.ring || run.cameras[algo::Unit::kTrailer] == 0 || run.frames == 0) return nullptr;
@@ -196,6 +203,7 @@ json MakeReport(const RunSummary& run, const json& quality) {
     AddMemory(run.memory, report);
     report["pools"] = Pools(run);
     report["live"] = Live(run);
+    report["events"] = Events(run.events);
     for (const algo::Unit unit : algo::kUnits) {
         if (run.cameras[unit] > 0) report["units"][ToString(unit)] = EmptyUnit();
     }

@@ -125,6 +125,7 @@ void Complete(const RigConfig& config, Board& board, const RunOutputs& outputs,
         live->Finish();
         summary.live = live->Summarise();
     }
+    summary.events = board.events().counts();
     summary.publishing = outputs.times();
     summary.can = outputs.can();
     for (const algo::Unit unit : algo::kUnits) {

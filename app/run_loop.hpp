@@ -9,6 +9,7 @@
 
 #include "algo/paper_stages.hpp"
 #include "app/config.hpp"
+#include "app/event_queue.hpp"
 #include "app/heap_calls.hpp"
 #include "app/live_frame_synchronizer.hpp"
 #include "app/pipeline.hpp"
@@ -86,6 +87,7 @@ struct RunSummary {
     MemorySummary memory{};
     std::optional<CanSummary> can{};  ///< when the run has ended; empty where no bus was read
     bool ring = false;
+    EventCounts events{};               ///< when the run has ended
     std::optional<LiveSummary> live{};  ///< of cameras that run at their own pace
 };
 

@@ -24,6 +24,7 @@ hal::PanoramaStatus Status(const ShownPanorama& shown, const RunSummary& run, ha
     hal::PanoramaStatus status;
     status.sequence = shown.picture.header.sequence;
     status.captured_from = start + shown.picture.header.captured_at;
+    status.spread = shown.captured_until - shown.picture.header.captured_at;
     status.cameras_missing = shown.cameras_missing;
     for (const algo::Overlap overlap : algo::kOverlaps) {
         const auto i = static_cast<std::size_t>(overlap);
@@ -99,7 +100,8 @@ hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const R
             TelemetryOptions{.paced = !live, .clock = live ? &board.clock() : nullptr});
     }
     publisher_ = std::make_unique<PanoramaPublisher>(
-        *network_, board.clock(), telemetry_.get(), format,
+        *network_, board.clock(),
+        SentBeside{.telemetry = telemetry_.get(), .events = &board.events()}, format,
         PanoramaPublisherOptions{.jpeg = {.budget_bytes = config.publish.max_bytes,
                                           .highest_quality = config.publish.jpeg_quality},
                                  .calibration_id = run.calibration_id,

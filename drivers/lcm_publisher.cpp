@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "lcmtypes/bot_core_image_t.h"
+#include "lcmtypes/hitchview_event_t.h"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 
@@ -30,6 +31,8 @@ static_assert(int(Quality::kNotAvailable) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_NOT
 static_assert(int(Quality::kError) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_ERROR);
 static_assert(int(Quality::kImplausible) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_IMPLAUSIBLE);
 static_assert(int(Quality::kStale) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_STALE);
+static_assert(int(hal::EventCode::kCameraLost) == HITCHVIEW_EVENT_T_CAMERA_LOST);
+static_assert(int(hal::EventCode::kCameraBack) == HITCHVIEW_EVENT_T_CAMERA_BACK);
 
 /// Room for everything in an image message that is not its JPEG.
 constexpr int kEnvelopeBytes = 1024;
@@ -89,6 +92,7 @@ Checked<Done> Check(const LcmPublisherOptions& options) {
     if (auto name = CheckLcmChannel("hitch_angle_channel", options.hitch_angle_channel); !name) {
         return name;
     }
+    if (auto name = CheckLcmChannel("event_channel", options.event_channel); !name) return name;
     const int bytes = options.max_image_bytes;
     if (bytes >= kSmallestImageBytes && bytes <= kLargestImageBytes) return Done{};
     return "max_image_bytes is " + std::to_string(bytes) + ", must be " +
@@ -153,6 +157,7 @@ Result<Done> LcmPublisher::DoPublish(const hal::PanoramaStatus& status) {
         .utime = clock_.EpochMicroseconds(status.captured_from),
         .capture_ns = status.captured_from.count(),
         .publish_ns = status.published_at.count(),
+        .spread_ns = status.spread.count(),
         .cameras_missing = static_cast<std::int32_t>(status.cameras_missing),
         .seam_state = {},
         .seam_matches = {status.seam_matches[0], status.seam_matches[1]},
@@ -181,6 +186,19 @@ Result<Done> LcmPublisher::DoPublish(const hal::HitchAngle& angle) {
         .angle_rad = valid ? angle.angle_rad : kNotANumber,
     };
     return Send(options_.hitch_angle_channel, message, hitchview_hitch_angle_t_encode);
+}
+
+Result<Done> LcmPublisher::DoPublish(const hal::Event& event) {
+    // The generated type has no const members; encoding only reads them.
+    const hitchview_event_t message{
+        .sequence = static_cast<std::int32_t>(event_sequence_++),
+        .utime = clock_.EpochMicroseconds(event.when),
+        .monotonic_ns = event.when.count(),
+        .code = static_cast<std::int16_t>(event.code),
+        .subject = const_cast<char*>(event.subject.c_str()),
+        .text = const_cast<char*>(event.text.c_str()),
+    };
+    return Send(options_.event_channel, message, hitchview_event_t_encode);
 }
 
 }  // namespace hitchview::drivers

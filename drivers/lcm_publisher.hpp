@@ -20,11 +20,12 @@ struct LcmPublisherOptions {
     std::string panorama_channel = "PANORAMA";
     std::string status_channel = "PANORAMA_STATUS";
     std::string hitch_angle_channel = "HITCH_ANGLE";
+    std::string event_channel = "PANORAMA_EVENT";
     int max_image_bytes = 1 << 20;  ///< largest JPEG. [1024, 8388608]
 };
 
-/// Panorama as bot_core.image_t, status and hitch angle as hitchview types, over LCM. Messages are
-/// encoded into one buffer taken at construction; publishing takes no memory.
+/// Panorama as bot_core.image_t, status, hitch angle and events as hitchview types, over LCM.
+/// Messages are encoded into one buffer taken at construction; publishing takes no memory.
 class LcmPublisher final : public hal::Publisher {
  public:
     /// Sends one empty message on kLcmStartChannel. `clock` must outlive the publisher.
@@ -37,6 +38,7 @@ class LcmPublisher final : public hal::Publisher {
     hal::Result<hal::Done> DoPublish(const hal::PanoramaImage& image) override;
     hal::Result<hal::Done> DoPublish(const hal::PanoramaStatus& status) override;
     hal::Result<hal::Done> DoPublish(const hal::HitchAngle& angle) override;
+    hal::Result<hal::Done> DoPublish(const hal::Event& event) override;
 
     template <typename Message>
     hal::Result<hal::Done> Send(const std::string& channel, const Message& message,
@@ -47,6 +49,7 @@ class LcmPublisher final : public hal::Publisher {
     const hal::Clock& clock_;
     std::vector<std::uint8_t> buffer_;
     std::uint32_t hitch_angle_sequence_ = 0;
+    std::uint32_t event_sequence_ = 0;
 };
 
 }  // namespace hitchview::drivers

@@ -155,13 +155,13 @@ Result<FrameLease> LibcameraDriver::DoWaitFrame(milliseconds timeout) {
 
 LibcameraDriver::MaybeAnswer LibcameraDriver::Step(std::chrono::nanoseconds timeout) {
     const int refused = buffers_.Queue(*camera_);
-    if (refused == -ENODEV) return Lose("it is gone");
+    if (refused == -ENODEV) return Lose(hal::CameraLoss::kDisconnected);
     const auto patience = options_.silence_periods * period_;
     const LibcameraMailbox::News news = mailbox_.Take(std::min(timeout, patience));
     buffers_.Collect(news.returned);
     if (news.filled) return TakeFrame(*news.filled);
-    if (news.gone) return Lose("it is gone");
-    if (IsSilent()) return Lose("it is silent");
+    if (news.gone) return Lose(hal::CameraLoss::kDisconnected);
+    if (IsSilent()) return Lose(hal::CameraLoss::kSilent);
     return std::nullopt;
 }
 
@@ -218,8 +218,9 @@ std::optional<std::array<hal::Plane, 3>> LibcameraDriver::WholePlanes(int slot) 
     return PlanesOf(layout_, buffers_.memory(slot));
 }
 
-Error LibcameraDriver::Lose(const char* why) {
-    Log(options_, "lost: ", why);
+Error LibcameraDriver::Lose(hal::CameraLoss why) {
+    Log(options_, "lost: ", hal::ToString(why));
+    loss_ = why;
     last_refusal_.clear();
     Disconnect();
     return Error::kDisconnected;

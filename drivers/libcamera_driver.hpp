@@ -44,7 +44,7 @@ class LibcameraDriver final : public hal::Camera {
     std::optional<std::array<hal::Plane, 3>> WholePlanes(int slot);
     bool IsSilent();
     void Drain();
-    hal::Error Lose(const char* why);
+    hal::Error Lose(hal::CameraLoss why);
 
     void NoteCompleted(libcamera::Request* request);
     void NoteGone() { mailbox_.NoteGone(); }
@@ -52,6 +52,7 @@ class LibcameraDriver final : public hal::Camera {
     [[nodiscard]] const hal::FrameFormat& DoFormat() const override { return format_; }
     hal::Result<hal::FrameLease> DoWaitFrame(std::chrono::milliseconds timeout) override;
     hal::Result<hal::Done> DoReopen() override;
+    [[nodiscard]] hal::CameraLoss DoLoss() const override { return loss_; }
     [[nodiscard]] hal::CameraCounts DoCounts() const override { return accounting_.counts(); }
     [[nodiscard]] hal::PoolLevel DoPool() const override;
 
@@ -72,6 +73,7 @@ class LibcameraDriver final : public hal::Camera {
     bool drained_ = false;  ///< of what came before the first call of WaitFrame
     hal::Instant heard_at_{};
     std::string last_refusal_;
+    hal::CameraLoss loss_ = hal::CameraLoss::kDisconnected;
 };
 
 }  // namespace hitchview::drivers

@@ -1,6 +1,7 @@
 #include "drivers/v4l2_camera.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -35,6 +36,16 @@ void Log(const V4l2CameraOptions& options, const char* what, const V4l2Failure& 
 
 bool IsCompressed(const V4l2PixelFormat& format) {
     return format.line_bytes_per_pixel == 0;
+}
+
+hal::CameraLoss LossOf(const V4l2Failure& failure) {
+    using hal::CameraLoss;
+    const int number = failure.error_number;
+    if (number == ENODEV || number == ENXIO || number == ENOENT) return CameraLoss::kDisconnected;
+    if (failure.error == Error::kTimeout) return CameraLoss::kSilent;
+    if (failure.error == Error::kNotFound) return CameraLoss::kNoSignal;
+    if (failure.error == Error::kUnsupported) return CameraLoss::kOtherFormat;
+    return CameraLoss::kIoError;
 }
 
 hal::Instant PeriodOf(double rate_hz) {
@@ -206,7 +217,7 @@ V4l2Result<Done> V4l2Camera::Watch() {
     // Without a buffer the device has nothing to say anything with.
     if (buffers_.all_lent()) heard_at_ = Now();
     if (Now() - heard_at_ <= options_.silence_periods * period_) return Done{};
-    if (restarted_) return V4l2Failure{Error::kDisconnected, "it is silent", 0};
+    if (restarted_) return V4l2Failure{Error::kTimeout, "it is silent", 0};
     restarted_ = true;
     heard_at_ = Now();
     if (const auto stopped = StopStream(device_); !stopped) return stopped;
@@ -219,6 +230,7 @@ V4l2Result<Done> V4l2Camera::Watch() {
 Error V4l2Camera::Lose(const V4l2Failure& failure) {
     Log(options_, "lost", failure);
     last_refusal_ = failure;
+    loss_ = LossOf(failure);
     Disconnect();
     return Error::kDisconnected;
 }

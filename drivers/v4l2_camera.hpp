@@ -93,6 +93,7 @@ class V4l2Camera final : public hal::Camera {
     [[nodiscard]] const hal::FrameFormat& DoFormat() const override { return format_; }
     hal::Result<hal::FrameLease> DoWaitFrame(std::chrono::milliseconds timeout) override;
     hal::Result<hal::Done> DoReopen() override;
+    [[nodiscard]] hal::CameraLoss DoLoss() const override { return loss_; }
     [[nodiscard]] hal::CameraCounts DoCounts() const override { return accounting_.counts(); }
     [[nodiscard]] hal::PoolLevel DoPool() const override;
 
@@ -112,6 +113,7 @@ class V4l2Camera final : public hal::Camera {
     bool restarted_ = false;  ///< since the last frame, for its silence
     hal::Instant heard_at_{};
     V4l2Failure last_refusal_;
+    hal::CameraLoss loss_ = hal::CameraLoss::kDisconnected;
 };
 
 }  // namespace hitchview::drivers

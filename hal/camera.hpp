@@ -20,6 +20,31 @@ struct CameraCounts {
     std::uint64_t reopened = 0;  ///< how often the device came back
 };
 
+/// Why a camera was lost.
+enum class CameraLoss : std::uint8_t {
+    kDisconnected,  ///< the device or its driver is gone
+    kSilent,        ///< it is there, and gives nothing
+    kNoSignal,      ///< nothing is plugged into it, or nothing that it can make out
+    kOtherFormat,   ///< what it gives now is not what it was opened for
+    kIoError,       ///< it refused to go on
+};
+
+constexpr const char* ToString(CameraLoss loss) {
+    switch (loss) {
+        case CameraLoss::kDisconnected:
+            return "disconnected";
+        case CameraLoss::kSilent:
+            return "silent";
+        case CameraLoss::kNoSignal:
+            return "no signal";
+        case CameraLoss::kOtherFormat:
+            return "another format";
+        case CameraLoss::kIoError:
+            return "I/O error";
+    }
+    return "unknown";
+}
+
 /// Timestamped frames from one camera. Thread: the one that calls WaitFrame and Reopen.
 class Camera {
  public:
@@ -42,6 +67,9 @@ class Camera {
     /// see the log. Try again later.
     Result<Done> Reopen() { return DoReopen(); }
 
+    /// After kDisconnected: why. Thread: WaitFrame's.
+    [[nodiscard]] CameraLoss loss() const { return DoLoss(); }
+
     /// Any thread.
     [[nodiscard]] CameraCounts counts() const { return DoCounts(); }
 
@@ -52,6 +80,7 @@ class Camera {
     [[nodiscard]] virtual const FrameFormat& DoFormat() const = 0;
     virtual Result<FrameLease> DoWaitFrame(std::chrono::milliseconds timeout) = 0;
     virtual Result<Done> DoReopen() { return Error::kUnsupported; }
+    [[nodiscard]] virtual CameraLoss DoLoss() const { return CameraLoss::kDisconnected; }
     [[nodiscard]] virtual CameraCounts DoCounts() const { return {}; }
     [[nodiscard]] virtual PoolLevel DoPool() const { return {}; }
 };

@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "hal/event.hpp"
 #include "hal/frame.hpp"
 #include "hal/hitch_angle.hpp"
 #include "hal/result.hpp"
@@ -46,6 +47,7 @@ struct PanoramaStatus {
     std::uint32_t sequence = 0;
     Instant captured_from{};
     Instant published_at{};
+    Instant spread{};  ///< from the oldest to the newest start of exposure
     std::uint32_t cameras_missing = 0;
     std::array<SeamState, 2> seams{};    ///< left, right
     std::array<int, 2> seam_matches{};   ///< inliers in this frame set
@@ -70,11 +72,13 @@ class Publisher {
     Result<Done> Publish(const PanoramaImage& image) { return DoPublish(image); }
     Result<Done> Publish(const PanoramaStatus& status) { return DoPublish(status); }
     Result<Done> Publish(const HitchAngle& angle) { return DoPublish(angle); }
+    Result<Done> Publish(const Event& event) { return DoPublish(event); }
 
  private:
     virtual Result<Done> DoPublish(const PanoramaImage& image) = 0;
     virtual Result<Done> DoPublish(const PanoramaStatus& status) = 0;
     virtual Result<Done> DoPublish(const HitchAngle& angle) = 0;
+    virtual Result<Done> DoPublish(const Event& event) = 0;
 };
 
 }  // namespace hitchview::hal

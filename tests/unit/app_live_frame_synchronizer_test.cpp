@@ -21,6 +21,11 @@ class TickingCamera final : public hal::Camera {
         : clock_(clock), next_(clock.Now() + phase), pool_({16, 16}, 8) {}
 
     void Plug(bool in) { plugged_ = in; }
+    /// Can be had again, and gives nothing, until it is plugged in.
+    void Mute() {
+        mute_ = true;
+        plugged_ = false;
+    }
 
  private:
     [[nodiscard]] const hal::FrameFormat& DoFormat() const override { return pool_.format(); }
@@ -35,11 +40,12 @@ class TickingCamera final : public hal::Camera {
         return pool_.Lease(*slot, header);
     }
     hal::Result<hal::Done> DoReopen() override {
-        if (!plugged_) return hal::Error::kNotFound;
+        if (!plugged_ && !mute_) return hal::Error::kNotFound;
         next_ = clock_.Now() + kPeriod;
         ++reopened_;
         return hal::Done{};
     }
+    [[nodiscard]] hal::CameraLoss DoLoss() const override { return hal::CameraLoss::kSilent; }
     [[nodiscard]] hal::CameraCounts DoCounts() const override {
         return {.delivered = delivered_, .reopened = reopened_};
     }
@@ -48,6 +54,7 @@ class TickingCamera final : public hal::Camera {
     Instant next_;
     hal::FramePool pool_;
     std::atomic<bool> plugged_{true};
+    std::atomic<bool> mute_{false};
     std::atomic<std::uint64_t> delivered_{0};
     std::atomic<std::uint64_t> reopened_{0};
     std::uint32_t sequence_ = 0;
@@ -61,7 +68,7 @@ class LiveFrameSynchronizerTest : public testing::Test {
             const auto unit = i < 2 ? algo::Unit::kTractor : algo::Unit::kTrailer;
             live.push_back({&cameras_[i], "camera" + std::to_string(i), unit, i % 2});
         }
-        sets_.emplace(live, clock_, kPeriod, kPeriod);
+        sets_.emplace(live, events_, clock_, kPeriod, kPeriod);
     }
 
     /// Takes sets until one is as wanted; the number taken, or -1 if none of many was.
@@ -82,6 +89,7 @@ class LiveFrameSynchronizerTest : public testing::Test {
     }
 
     drivers::SteadyClock clock_;
+    EventQueue events_;
     std::array<TickingCamera, 4> cameras_{
         TickingCamera(clock_, milliseconds(1)), TickingCamera(clock_, milliseconds(2)),
         TickingCamera(clock_, milliseconds(2)), TickingCamera(clock_, milliseconds(3))};
@@ -109,6 +117,38 @@ TEST_F(LiveFrameSynchronizerTest, AnUnpluggedCameraIsMissingAndComesBack) {
     EXPECT_GE(TakeUntilMissing(0), 0);
     sets_->Finish();
     EXPECT_EQ(sets_->Summarise().cameras[2].device.reopened, 1U);
+}
+
+TEST_F(LiveFrameSynchronizerTest, ACameraThatGoesIsToldOfOnceAndOnceThatItIsBack) {
+    EXPECT_GE(TakeUntilMissing(0), 0);
+    EXPECT_FALSE(events_.Take());
+    cameras_[2].Plug(false);
+    EXPECT_GE(TakeUntilMissing(0b0100), 0);
+    cameras_[2].Plug(true);
+    EXPECT_GE(TakeUntilMissing(0), 0);
+    sets_->Finish();
+    const auto lost = events_.Take();
+    const auto back = events_.Take();
+    ASSERT_TRUE(lost && back);
+    EXPECT_EQ(lost->code, hal::EventCode::kCameraLost);
+    EXPECT_EQ(lost->subject.view(), "camera2");
+    EXPECT_EQ(lost->text.view(), "lost: silent");
+    EXPECT_EQ(back->code, hal::EventCode::kCameraBack);
+    EXPECT_EQ(back->subject.view(), "camera2");
+    const auto away = std::chrono::duration_cast<milliseconds>(back->when - lost->when);
+    EXPECT_EQ(back->text.view(), "back after " + std::to_string(away.count()) + " ms");
+    EXPECT_FALSE(events_.Take());
+}
+
+TEST_F(LiveFrameSynchronizerTest, ACameraThatCanBeHadAndGivesNothingIsNotBack) {
+    EXPECT_GE(TakeUntilMissing(0), 0);
+    cameras_[2].Mute();
+    EXPECT_GE(TakeUntilMissing(0b0100), 0);
+    while (cameras_[2].counts().reopened < 3) (void)sets_->WaitSet();
+    EXPECT_EQ(events_.counts().happened, (std::array<std::uint64_t, 2>{1, 0}));
+    cameras_[2].Plug(true);
+    EXPECT_GE(TakeUntilMissing(0), 0);
+    EXPECT_EQ(events_.counts().happened, (std::array<std::uint64_t, 2>{1, 1}));
 }
 
 TEST_F(LiveFrameSynchronizerTest, WithoutAnyCameraSetsGoOnEmpty) {

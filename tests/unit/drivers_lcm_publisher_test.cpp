@@ -9,6 +9,7 @@
 #include "drivers/lcm_subscriber.hpp"
 #include "hal/fake_clock.hpp"
 #include "lcmtypes/bot_core_image_t.h"
+#include "lcmtypes/hitchview_event_t.h"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 
@@ -142,6 +143,7 @@ TEST_F(LcmPublisherTest, AStatusKeepsEveryField) {
         hal::PanoramaStatus{.sequence = 9,
                             .captured_from = milliseconds(30),
                             .published_at = milliseconds(70),
+                            .spread = milliseconds(12),
                             .cameras_missing = 2,
                             .seams = {hal::SeamState::kLocked, hal::SeamState::kCoast},
                             .seam_matches = {41, 3},
@@ -157,6 +159,7 @@ TEST_F(LcmPublisherTest, AStatusKeepsEveryField) {
     EXPECT_EQ(message.utime, 1'700'000'000'030'000);
     EXPECT_EQ(message.capture_ns, 30'000'000);
     EXPECT_EQ(message.publish_ns, 70'000'000);
+    EXPECT_EQ(message.spread_ns, 12'000'000);
     EXPECT_EQ(message.cameras_missing, 2);
     EXPECT_EQ(message.seam_state[0], HITCHVIEW_PANORAMA_STATUS_T_SEAM_LOCKED);
     EXPECT_EQ(message.seam_state[1], HITCHVIEW_PANORAMA_STATUS_T_SEAM_COAST);
@@ -203,6 +206,22 @@ TEST_F(LcmPublisherTest, AHitchAngleThatIsNotValidIsNotANumber) {
     EXPECT_TRUE(std::isnan(message.angle_rad));
 }
 
+TEST_F(LcmPublisherTest, AnEventKeepsEveryField) {
+    ASSERT_TRUE(Publisher()->Publish(hal::Event{.code = hal::EventCode::kCameraBack,
+                                                .when = milliseconds(5),
+                                                .subject = std::string_view("rear"),
+                                                .text = std::string_view("back after 412 ms")}));
+
+    auto message = Read("PANORAMA_EVENT", hitchview_event_t_decode);
+    EXPECT_EQ(message.sequence, 0);
+    EXPECT_EQ(message.utime, 1'700'000'000'005'000);
+    EXPECT_EQ(message.monotonic_ns, 5'000'000);
+    EXPECT_EQ(message.code, HITCHVIEW_EVENT_T_CAMERA_BACK);
+    EXPECT_STREQ(message.subject, "rear");
+    EXPECT_STREQ(message.text, "back after 412 ms");
+    hitchview_event_t_decode_cleanup(&message);
+}
+
 TEST(LcmPublisherOptionsTest, AMistakeIsNamed) {
     const hal::FakeClock clock;
     const struct {
@@ -213,6 +232,7 @@ TEST(LcmPublisherOptionsTest, AMistakeIsNamed) {
         {{.panorama_channel = ".*"}, "panorama_channel is '.*'"},
         {{.status_channel = ""}, "status_channel is ''"},
         {{.hitch_angle_channel = "A B"}, "hitch_angle_channel is 'A B'"},
+        {{.event_channel = "A/B"}, "event_channel is 'A/B'"},
         {{.max_image_bytes = 100}, "max_image_bytes is 100, must be 1024 to 8388608"},
     };
     for (const auto& c : cases) {

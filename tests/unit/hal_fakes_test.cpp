@@ -54,6 +54,11 @@ TEST(FakePublisherTest, KeepsACopyOfWhatItWasLent) {
     EXPECT_EQ(fake.images[0].image.sequence, 4U);
     EXPECT_EQ(fake.images[0].jpeg, (std::vector<std::uint8_t>{1, 2, 3}));
     EXPECT_TRUE(fake.statuses.empty());
+    EXPECT_FALSE(publisher.Publish(Event{}));
+    fake.refusal.reset();
+    EXPECT_TRUE(publisher.Publish(Event{.code = EventCode::kCameraBack}));
+    ASSERT_EQ(fake.events.size(), 1U);
+    EXPECT_EQ(fake.events[0].code, EventCode::kCameraBack);
 }
 
 TEST(FakeClockTest, TimePassesOnlyWhenToldOrSlept) {

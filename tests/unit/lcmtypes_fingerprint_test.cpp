@@ -4,10 +4,12 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "lcmtypes/bot_core_image_t.h"
+#include "lcmtypes/hitchview_event_t.h"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 
@@ -58,9 +60,9 @@ class TypeHash {
 };
 
 template <typename Message>
-std::uint64_t WireFingerprint(int (*encode)(void*, int, int, const Message*)) {
+std::uint64_t WireFingerprint(int (*encode)(void*, int, int, const Message*),
+                              const Message& message = {}) {
     std::array<std::uint8_t, 256> bytes{};
-    const Message message{};
     EXPECT_GT(encode(bytes.data(), 0, static_cast<int>(bytes.size()), &message), 8);
     std::uint64_t fingerprint = 0;
     for (int i = 0; i < 8; ++i) fingerprint = fingerprint << 8 | bytes.at(i);
@@ -90,6 +92,7 @@ TEST(FingerprintTest, ThePanoramaStatusHasNotChanged) {
                            {"int64_t", "utime", ""},
                            {"int64_t", "capture_ns", ""},
                            {"int64_t", "publish_ns", ""},
+                           {"int64_t", "spread_ns", ""},
                            {"int32_t", "cameras_missing", ""},
                            {"int8_t", "seam_state", "2", true},
                            {"int32_t", "seam_matches", "2", true},
@@ -112,6 +115,20 @@ TEST(FingerprintTest, TheHitchAngleHasNotChanged) {
                           {"double", "angle_rad", ""}});
 
     EXPECT_EQ(WireFingerprint(hitchview_hitch_angle_t_encode), angle.Fingerprint());
+}
+
+TEST(FingerprintTest, TheEventHasNotChanged) {
+    const TypeHash event({{"int32_t", "sequence", ""},
+                          {"int64_t", "utime", ""},
+                          {"int64_t", "monotonic_ns", ""},
+                          {"int16_t", "code", ""},
+                          {"string", "subject", ""},
+                          {"string", "text", ""}});
+    std::string none;  // the generated code needs text to measure
+    hitchview_event_t message{};
+    message.subject = message.text = none.data();
+
+    EXPECT_EQ(WireFingerprint(hitchview_event_t_encode, message), event.Fingerprint());
 }
 
 }  // namespace
