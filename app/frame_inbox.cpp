@@ -9,7 +9,7 @@ void FrameInbox::Put(std::size_t camera, hal::FrameLease frame, hal::Instant now
     const std::lock_guard lock(mutex_);
     if (closed_) return;
     Place& place = places_[camera];
-    place.pace.Add(frame.view().header);
+    place.pace.Add(frame.view().header, period_);
     auto& [head, next] = place.frames;
     if (head && next) {
         head = std::move(next);

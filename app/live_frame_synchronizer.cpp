@@ -13,7 +13,7 @@ LiveFrameSynchronizer::LiveFrameSynchronizer(std::vector<LiveCamera> cameras, Ev
       clock_(clock),
       period_(period),
       rule_(period, tolerance),
-      inbox_(cameras_.size(), clock.Now()) {
+      inbox_(cameras_.size(), period, clock.Now()) {
     HV_EXPECT(cameras_.size() <= kMaxCameras);
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
         threads_.push_back(std::make_unique<CaptureThread>(*cameras_[i].camera, cameras_[i].name, i,

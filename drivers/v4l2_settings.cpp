@@ -12,10 +12,20 @@ bool IsUnsupported(const V4l2Result<hal::Done>& outcome) {
     return !outcome && outcome.error().error == hal::Error::kUnsupported;
 }
 
-/// Field by field what makes one timing different from another; the rest is padding.
+std::uint32_t TotalWidth(const v4l2_bt_timings& t) {
+    return t.width + t.hfrontporch + t.hsync + t.hbackporch;
+}
+
+std::uint32_t TotalHeight(const v4l2_bt_timings& t) {
+    return t.height + t.vfrontporch + t.vsync + t.vbackporch;
+}
+
+/// What makes one timing different from another; the rest is padding. The blanking is among it:
+/// 1280x720 has one pixel clock at 25, 30, 50 and 60 Hz.
 bool SameTimings(const v4l2_dv_timings& a, const v4l2_dv_timings& b) {
     return a.bt.width == b.bt.width && a.bt.height == b.bt.height &&
-           a.bt.interlaced == b.bt.interlaced && a.bt.pixelclock == b.bt.pixelclock;
+           a.bt.interlaced == b.bt.interlaced && a.bt.pixelclock == b.bt.pixelclock &&
+           TotalWidth(a.bt) == TotalWidth(b.bt) && TotalHeight(a.bt) == TotalHeight(b.bt);
 }
 
 bool IsInterlaced(std::uint32_t field) {

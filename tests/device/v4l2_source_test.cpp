@@ -14,11 +14,6 @@ using tests::Vivid;
 
 constexpr milliseconds kLongestRecovery{1000};
 
-/// What the virtual HDMI source sends; entries of its menu.
-enum Signal { kCurrent = 0, kNone = 1, kSelected = 4 };
-constexpr int kSize1280x720 = 9;
-constexpr int kSize640x480 = 0;
-
 class V4l2SourceTest : public testing::Test {
  protected:
     void SetUp() override {
@@ -39,7 +34,7 @@ class V4l2SourceTest : public testing::Test {
 
     /// The source changes to one of the sizes that it has a menu of.
     static void Select(int size) {
-        ASSERT_TRUE(Vivid::Set(0, "dv_timings_signal_mode", kSelected));
+        ASSERT_TRUE(Vivid::Set(0, "dv_timings_signal_mode", tests::kSelectedSignal));
         ASSERT_TRUE(Vivid::Set(0, "dv_timings", size));
     }
 
@@ -58,16 +53,16 @@ class V4l2SourceTest : public testing::Test {
 
 TEST_F(V4l2SourceTest, ASignalThatIsLostAndComesBackIsFollowed) {
     ASSERT_NO_FATAL_FAILURE(Start());
-    ASSERT_TRUE(Vivid::Set(0, "dv_timings_signal_mode", kNone));
+    ASSERT_TRUE(Vivid::Set(0, "dv_timings_signal_mode", tests::kNoSignal));
     EXPECT_TRUE(CameraFollower::Await([&] { return follower_->refusals(Error::kNotFound) > 1; }));
     EXPECT_EQ(follower_->answers(Error::kDisconnected) > 0, true);
-    ASSERT_TRUE(Vivid::Set(0, "dv_timings_signal_mode", kCurrent));
+    ASSERT_TRUE(Vivid::Set(0, "dv_timings_signal_mode", tests::kCurrentSignal));
     ExpectFramesSoon();
 }
 
 TEST_F(V4l2SourceTest, AnotherSizeThatTheDeviceScalesToOursGoesOnByItself) {
     ASSERT_NO_FATAL_FAILURE(Start());
-    ASSERT_NO_FATAL_FAILURE(Select(kSize640x480));
+    ASSERT_NO_FATAL_FAILURE(Select(tests::k640x480p59));
     EXPECT_TRUE(CameraFollower::Await([&] { return camera_->counts().reopened > 0; }));
     ExpectFramesSoon();
     EXPECT_EQ(follower_->answers(Error::kDisconnected), 0);
@@ -78,10 +73,10 @@ TEST_F(V4l2SourceTest, AnotherSizeIsRefusedUntilItIsOursAgain) {
         ASSERT_TRUE(Vivid::Set(0, std::string("enable_capture_") + ability, 0));
     }
     ASSERT_NO_FATAL_FAILURE(Start());
-    ASSERT_NO_FATAL_FAILURE(Select(kSize640x480));
+    ASSERT_NO_FATAL_FAILURE(Select(tests::k640x480p59));
     EXPECT_TRUE(
         CameraFollower::Await([&] { return follower_->refusals(Error::kUnsupported) > 1; }));
-    ASSERT_NO_FATAL_FAILURE(Select(kSize1280x720));
+    ASSERT_NO_FATAL_FAILURE(Select(tests::k1280x720p60));
     ExpectFramesSoon();
 }
 

@@ -24,10 +24,16 @@ inline bool VividIsThere() {
 
 enum class VividInput { kWebcam = 0, kHdmi = 3 };
 
+/// What a virtual HDMI source sends: entries of the menu `dv_timings_signal_mode`.
+enum VividSignal { kCurrentSignal = 0, kNoSignal = 1, kSelectedSignal = 4 };
+/// Entries of the menu `dv_timings`, which the selected signal has.
+enum VividTimings { k640x480p59 = 0, k1280x720p30 = 7, k1280x720p60 = 9, k1920x1080p30 = 12 };
+
 struct VividOptions {
     int cameras = 1;
     bool multi_planar = false;
     VividInput input = VividInput::kWebcam;
+    int hdmi_camera = -1;  ///< this one has HDMI whatever the others have
 };
 
 /// Virtual cameras /dev/video0, /dev/video1, ... with one input each, gone at the end of the scope.
@@ -58,12 +64,16 @@ class Vivid {
         return list;
     }
     static std::string LoadCommand(const VividOptions& options) {
-        std::string numbers = "0";
-        for (int i = 1; i < options.cameras; ++i) numbers.append(",").append(std::to_string(i));
+        std::string numbers;
+        std::string inputs;
+        for (int i = 0; i < options.cameras; ++i) {
+            const auto input = i == options.hdmi_camera ? VividInput::kHdmi : options.input;
+            inputs.append(i > 0 ? "," : "").append(std::to_string(static_cast<int>(input)));
+            numbers.append(i > 0 ? "," : "").append(std::to_string(i));
+        }
         const int n = options.cameras;
         return "modprobe vivid n_devs=" + std::to_string(n) + " node_types=" + Repeated("0x1", n) +
-               " num_inputs=" + Repeated("1", n) +
-               " input_types=" + Repeated(std::to_string(static_cast<int>(options.input)), n) +
+               " num_inputs=" + Repeated("1", n) + " input_types=" + inputs +
                " multiplanar=" + Repeated(options.multi_planar ? "2" : "1", n) +
                " vid_cap_nr=" + numbers;
     }
