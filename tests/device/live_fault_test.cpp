@@ -78,10 +78,19 @@ class LiveFaultTest : public testing::Test {
         EXPECT_EQ(report_.at("heap_calls_after_ready"), 0) << report_.at("heap_calls_by_thread");
         EXPECT_EQ(Count(report_.at("live").at("sets"), "empty"), 0U);
         tests::ExpectFramesAccountedFor(report_);
+        ExpectSpreadsOfOnePeriod();
         for (const auto& [name, camera] : report_.at("live").at("cameras").items()) {
             EXPECT_NEAR(camera.at("period_ms").get<double>(), 33.3, 1) << name;
             if (name == kFaultyName) continue;
             EXPECT_EQ(Count(camera, "reopened") + Count(camera, "corrupted"), 0U) << name;
+        }
+    }
+
+    /// The cameras run freely, each at a moment of its own.
+    void ExpectSpreadsOfOnePeriod() {
+        for (const tests::HeardStatus& status : program_->statuses()) {
+            EXPECT_GT(status.spread, Instant(0));
+            EXPECT_LE(Ms(status.spread), 33.4);
         }
     }
 

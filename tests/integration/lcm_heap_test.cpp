@@ -23,7 +23,8 @@ TEST(LcmHeapTest, PublishingTakesNoMemory) {
     for (int i = 0; i < 50; ++i) {
         all_sent = publisher.value()->Publish(image).ok() &&
                    publisher.value()->Publish(hal::PanoramaStatus{}).ok() &&
-                   publisher.value()->Publish(hal::HitchAngle{}).ok() && all_sent;
+                   publisher.value()->Publish(hal::HitchAngle{}).ok() &&
+                   publisher.value()->Publish(hal::Event{}).ok() && all_sent;
     }
     EXPECT_EQ(HeapCallsOfThisThread(), before);
     EXPECT_TRUE(all_sent);

@@ -160,6 +160,8 @@ TEST_F(LcmRunTest, EveryPanoramaAndTheHitchAngleArriveAtOtherPrograms) {
 
     const auto& statuses = log_["PANORAMA_STATUS"];
     ASSERT_FALSE(statuses.empty());
+    for (const auto& message : statuses)
+        EXPECT_EQ(DecodeStatus(message).spread_ns, 0) << "all cameras are recorded at one pace";
     const auto& angles = log_["HITCH_ANGLE"];
     EXPECT_GE(angles.size(), 100U);  // 150 in three seconds
     constexpr milliseconds kPeriod{20};
@@ -182,6 +184,7 @@ TEST_F(LcmRunTest, WithoutACanBusNoHitchAngleIsSent) {
     ExpectEveryPanoramaArrived();
     EXPECT_GT(log_["PANORAMA_STATUS"].size(), 0U);
     EXPECT_EQ(log_["HITCH_ANGLE"].size(), 0U);
+    EXPECT_EQ(log_["PANORAMA_EVENT"].size(), 0U);
 }
 
 }  // namespace

@@ -108,6 +108,7 @@ TEST_F(V4l2CameraTest, SilenceRestartsTheStreamOnceAndThenEndsIt) {
     Open();
     EXPECT_EQ(Answer(), Error::kDisconnected);
     EXPECT_EQ(kernel_.stream_starts, 2);
+    EXPECT_EQ(camera_->loss(), hal::CameraLoss::kSilent);
     EXPECT_EQ(Answer(), Error::kDisconnected);
     EXPECT_TRUE(camera_->Reopen().ok());
     EXPECT_EQ(camera_->counts().reopened, 1U);
