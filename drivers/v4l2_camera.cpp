@@ -134,9 +134,11 @@ V4l2Camera::MaybeAnswer V4l2Camera::Step(milliseconds timeout) {
     const auto queued = buffers_.Queue(device_);
     if (!queued && queued.error().error == Error::kDisconnected) return Lose(queued.error());
     const Woken woken = Wait(timeout);
-    if (woken.error) return Lose(ReasonOfError());
-    if (woken.event && TakeSourceChange(device_)) return FollowSource();
-    if (woken.frame) return TakeFrame();
+    if (!woken.error && woken.event && TakeSourceChange(device_)) return FollowSource();
+    // A signal that interrupts poll looks like an error of the device: what it answers counts.
+    if (woken.frame || woken.error) {
+        if (auto answer = TakeFrame()) return answer;
+    }
     const auto watched = Watch();
     if (!watched) return Lose(watched.error());
     return std::nullopt;
@@ -161,12 +163,6 @@ V4l2Camera::Woken V4l2Camera::Wait(milliseconds timeout) {
     const int told = files[0].revents;
     return {(told & POLLIN) != 0, (told & POLLPRI) != 0,
             (told & (POLLERR | POLLHUP | POLLNVAL)) != 0};
-}
-
-V4l2Failure V4l2Camera::ReasonOfError() {
-    const auto refused = buffers_.Dequeue(device_);
-    return refused ? V4l2Failure{Error::kDisconnected, "poll tells of an error", 0}
-                   : refused.error();
 }
 
 void V4l2Camera::Drain() {

@@ -81,7 +81,6 @@ class V4l2Camera final : public hal::Camera {
     MaybeAnswer Step(std::chrono::milliseconds timeout);
     MaybeAnswer TakeFrame();
     MaybeAnswer FollowSource();
-    V4l2Failure ReasonOfError();
     void Drain();
     MaybeAnswer Lend(const V4l2Buffers::Filled& filled);
     MaybeAnswer Decode(const V4l2Buffers::Filled& filled, const hal::FrameHeader& header);

@@ -39,6 +39,10 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
     bool has_rate = true;
     std::map<std::uint32_t, int> controls;
     std::deque<Frame> script;  ///< handed out as buffers are queued
+    int poll_errors = 0;       ///< so often poll tells of an error
+    int failure = 0;           ///< errno of the stream from now on
+    v4l2_dv_timings signal{};  ///< of the source
+    v4l2_dv_timings timings{};
 
     int stream_starts = 0;
     int mapped = 0;
@@ -71,7 +75,10 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
     int Poll(std::span<pollfd> files, std::chrono::milliseconds timeout) override {
         pollfd& device = files[0];
         device.revents = 0;
-        if (!script.empty() && !queued_.empty()) {
+        if (failure != 0 || poll_errors > 0) {
+            --poll_errors;
+            device.revents = POLLERR;
+        } else if (!script.empty() && !queued_.empty()) {
             device.revents = POLLIN;
         } else if (drivers::SystemKernel().Poll(files.subspan(1), timeout) == 0) {
             return 0;
@@ -147,6 +154,15 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
                 return 0;
             case VIDIOC_DQBUF:
                 return Fill(As<v4l2_buffer>(argument));
+            case VIDIOC_QUERY_DV_TIMINGS:
+                As<v4l2_dv_timings>(argument) = signal;
+                return 0;
+            case VIDIOC_G_DV_TIMINGS:
+                As<v4l2_dv_timings>(argument) = timings;
+                return 0;
+            case VIDIOC_S_DV_TIMINGS:
+                timings = As<v4l2_dv_timings>(argument);
+                return 0;
             case VIDIOC_STREAMON:
                 ++stream_starts;
                 return 0;
@@ -184,6 +200,7 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
     }
 
     int Fill(v4l2_buffer& buffer) {
+        if (failure != 0) return failure;
         if (script.empty() || queued_.empty()) return EAGAIN;
         const Frame& frame = script.front();
         buffer.index = queued_.front();

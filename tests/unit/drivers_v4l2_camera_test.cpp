@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "drivers/v4l2_camera.hpp"
+#include "drivers/v4l2_settings.hpp"
 #include "tests/support/fake_v4l2_kernel.hpp"
 #include "tests/support/heap_calls.hpp"
 #include "tests/support/jpeg_picture.hpp"
@@ -114,6 +115,44 @@ TEST_F(V4l2CameraTest, SilenceRestartsTheStreamOnceAndThenEndsIt) {
     EXPECT_EQ(camera_->counts().reopened, 1U);
     Script(0, 1);
     EXPECT_TRUE(camera_->WaitFrame(milliseconds(100)).ok());
+}
+
+TEST_F(V4l2CameraTest, AnErrorOfPollThatTheDeviceDoesNotConfirmCostsNothing) {
+    V4l2Camera& camera = Open();
+    kernel_.poll_errors = 3;
+    EXPECT_EQ(camera.WaitFrame(milliseconds(1)).error(), Error::kTimeout);
+    kernel_.poll_errors = 1;
+    Script(0, 1);
+    EXPECT_TRUE(camera.WaitFrame(milliseconds(100)).ok());
+    EXPECT_EQ(camera.counts().lost, 0U);
+}
+
+TEST_F(V4l2CameraTest, ADeviceThatFailsIsLostAtOnceAndSaysWhy) {
+    V4l2Camera& camera = Open();
+    for (const auto& [error, loss] : {std::pair{EIO, hal::CameraLoss::kIoError},
+                                      std::pair{ENODEV, hal::CameraLoss::kDisconnected}}) {
+        kernel_.failure = error;
+        EXPECT_EQ(Answer(), Error::kDisconnected);
+        EXPECT_EQ(camera.loss(), loss);
+        kernel_.failure = 0;
+        EXPECT_TRUE(camera.Reopen().ok());
+    }
+}
+
+TEST(V4l2TimingsTest, SignalsThatDifferInTheirBlankingAloneAreFollowed) {
+    constexpr std::uint32_t kBlankingAt60Hz = 110;
+    constexpr std::uint32_t kBlankingAt30Hz = 1760;
+    tests::FakeV4l2Kernel kernel;
+    kernel.timings.bt.width = 1280;
+    kernel.timings.bt.height = 720;
+    kernel.timings.bt.pixelclock = 74'250'000;
+    kernel.timings.bt.hfrontporch = kBlankingAt60Hz;
+    kernel.signal = kernel.timings;
+    kernel.signal.bt.hfrontporch = kBlankingAt30Hz;
+    V4l2Device device(kernel);
+    ASSERT_TRUE(device.Open("/dev/video7"));
+    EXPECT_TRUE(FollowTimings(device));
+    EXPECT_EQ(kernel.timings.bt.hfrontporch, kBlankingAt30Hz);
 }
 
 TEST_F(V4l2CameraTest, AFrameHeldThroughAReopenKeepsItsMemory) {
