@@ -52,6 +52,7 @@ struct CameraFrame {
     int chroma_stride_bytes = 0;
     PixelLayout layout = PixelLayout::kNv12;
     SampleRange range = SampleRange::kFull;
+    int side = 1;  ///< pixels of the camera to one of these, each way (see PictureReduction)
 
     [[nodiscard]] bool present() const { return luma != nullptr; }
     [[nodiscard]] bool has_chroma() const { return layout != PixelLayout::kGrey; }
@@ -70,6 +71,10 @@ struct CameraFrame {
         const int step = is_packed() ? 2 : 1;
         return {chroma + first + channel * step, chroma_stride_bytes, 2 * step, width_px / 2,
                 is_packed() ? height_px : height_px / 2};
+    }
+    /// Where a pixel of the camera lies in this picture, each way.
+    [[nodiscard]] float Reduced(float camera_px) const {
+        return side == 1 ? camera_px : (camera_px + 0.5F) / static_cast<float>(side) - 0.5F;
     }
     /// Where luma's pixel (x, y) lies among the samples of ChromaSamples.
     [[nodiscard]] static float ChromaX(float luma_x) { return 0.5F * luma_x - 0.25F; }

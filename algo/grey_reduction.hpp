@@ -1,9 +1,8 @@
 #pragma once
 
-#include <cstdint>
 #include <opencv2/core/mat.hpp>
-#include <vector>
 
+#include "algo/box_mean.hpp"
 #include "algo/camera_frame.hpp"
 
 namespace hitchview::algo {
@@ -21,8 +20,7 @@ class GreyReduction {
 
  private:
     int side_;
-    std::vector<std::uint16_t> sums_;  // of the columns of a row of squares
-    std::vector<std::uint16_t> pairs_;
+    BoxMean means_;
 };
 
 }  // namespace hitchview::algo

@@ -95,8 +95,11 @@ class BlockSources {
 void ReadCorners(const ComposedMap& map, int s, int row, int col, BlockSource& source) {
     const ComposedMap::Corner* upper = &map.corner(s, row, col);
     const ComposedMap::Corner* lower = &map.corner(s, row + 1, col);
-    source.x = {upper[0].x, upper[1].x, lower[0].x, lower[1].x};
-    source.y = {upper[0].y, upper[1].y, lower[0].y, lower[1].y};
+    const CameraFrame& frame = source.camera->frame();
+    source.x = {frame.Reduced(upper[0].x), frame.Reduced(upper[1].x), frame.Reduced(lower[0].x),
+                frame.Reduced(lower[1].x)};
+    source.y = {frame.Reduced(upper[0].y), frame.Reduced(upper[1].y), frame.Reduced(lower[0].y),
+                frame.Reduced(lower[1].y)};
     source.weight = {upper[0].weight, upper[1].weight, lower[0].weight, lower[1].weight};
 }
 

@@ -8,7 +8,8 @@
 
 namespace hitchview::algo {
 
-/// Makes the output picture: every pixel is read once, bilinear, straight from the camera frames;
+/// Makes the output picture: every pixel is read once, bilinear, straight from the camera frames
+/// (reduced ones included);
 /// where cameras or units are blended, once from each of them. Bit-identical on any number of
 /// tasks.
 class PanoramaRenderer {

@@ -115,14 +115,36 @@ void UnitGeometry::ShareByMargins(Sights& sights) {
     for (CameraSight& sight : sights) sight.weight /= sum;
 }
 
-std::optional<SightLine> UnitGeometry::SightAlong(const Vector3d& ray) const {
+double UnitGeometry::PixelsAtHorizon(int camera) const {
+    if (!view_.IsRing()) return 1;
+    const auto ray_at = [&](int x) { return view_.Ray({x, view_.horizon_y_px}); };
+    double sum = 0;
+    int columns = 0;
+    for (int x = 0; x + 1 < view_.width_px; ++x) {
+        Vector2d a;
+        Vector2d b;
+        if (MainCamera(ray_at(x)) != camera) continue;
+        if (!Project(camera, ray_at(x), a) || !Project(camera, ray_at(x + 1), b)) continue;
+        sum += (b - a).norm();
+        ++columns;
+    }
+    return columns == 0 ? 1 : sum / columns;
+}
+
+std::optional<int> UnitGeometry::MainCamera(const Vector3d& ray) const {
     Sights sights;
     See(ray, sights);
     const auto best = std::max_element(
         sights.begin(), sights.end(),
         [](const CameraSight& a, const CameraSight& b) { return a.weight < b.weight; });
     if (best == sights.end() || best->weight <= 0) return std::nullopt;
-    return SightOf(best->camera, ray);
+    return best->camera;
+}
+
+std::optional<SightLine> UnitGeometry::SightAlong(const Vector3d& ray) const {
+    const std::optional<int> maybe_camera = MainCamera(ray);
+    if (!maybe_camera) return std::nullopt;
+    return SightOf(*maybe_camera, ray);
 }
 
 SightLine UnitGeometry::SightOf(int camera, const Vector3d& ray) const {

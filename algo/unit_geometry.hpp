@@ -87,6 +87,10 @@ class UnitGeometry {
     [[nodiscard]] std::optional<Eigen::Vector3d> ViewRay(int camera,
                                                          const Eigen::Vector2d& pixel) const;
 
+    /// Pixels of a ring's `camera` to one of the view where it shows the horizon, on average over
+    /// the columns in which it has the largest share; 1 where there are none, and of a plane.
+    [[nodiscard]] double PixelsAtHorizon(int camera) const;
+
     /// How the camera with the largest share in `ray` of a ring's view sees what is shown there.
     /// Empty where no camera has a share.
     [[nodiscard]] std::optional<SightLine> SightAlong(const Eigen::Vector3d& ray) const;
@@ -117,6 +121,8 @@ class UnitGeometry {
         double least_cosine;  ///< of the angle from the optical axis that the lens can see
     };
 
+    /// The camera with the largest share.
+    [[nodiscard]] std::optional<int> MainCamera(const Eigen::Vector3d& ray) const;
     static bool ProjectPoint(const MountedCamera& camera, const Eigen::Vector3d& p_unit_m,
                              Eigen::Vector2d& pixel);
     [[nodiscard]] const MountedCamera& mounted(int camera) const {

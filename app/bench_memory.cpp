@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "algo/multiband_blend.hpp"
+#include "algo/picture_reduction.hpp"
 #include "algo/unified_options.hpp"
 #include "algo/unified_vertex_motion.hpp"
 #include "app/jpeg_encoder.hpp"
@@ -56,6 +57,9 @@ std::vector<MemoryPart> MemoryOf(const RigGeometry& geometry, const hal::FrameFo
     const auto map = Noted("composed map and seams", parts, [&] {
         return std::make_unique<algo::ComposedMap>(canvas, geometry.units,
                                                    algo::SeamOptionsOf(canvas));
+    });
+    const auto reduced = Noted("reduced pictures", parts, [&] {
+        return std::make_unique<algo::PictureReduction>(geometry.units);
     });
     const auto bands = Noted("bands of the joints", parts,
                              [&] { return std::make_unique<algo::MultibandBlend>(*map); });

@@ -12,8 +12,9 @@ namespace hitchview::app {
 /// Thread: one.
 class CameraPace {
  public:
-    /// Frames are further apart than their numbers say by so many periods: the camera was away.
-    static constexpr int kAwayPeriods = 3;
+    /// Frames are further apart than their numbers say by so many periods: the camera was away, or
+    /// frames are missing that it did not number. Stamps tremble by less.
+    static constexpr int kAwayPeriods = 1;
 
     /// `period`: what it was asked for, > 0.
     void Add(const hal::FrameHeader& frame, hal::Instant period) {

@@ -60,6 +60,7 @@ Pipeline::Pipeline(const RigGeometry& rig, algo::VertexMotion& motion, algo::Tas
       map_(rig_.canvas, rig_.units, algo::SeamOptionsOf(rig_.canvas)),
       gains_(exposure_.gains()),
       bands_(map_),
+      reduction_(rig_.units),
       format_(CanvasFormat(rig.canvas)),
       panorama_(hal::FrameBytes(format_)),
       view_(hal::FrameBytes(format_)) {}
@@ -121,7 +122,8 @@ const ShownPanorama* Pipeline::Show(const algo::Composition& composition) {
     }
     {
         const StageTimer timer(times_, Stage::kRender);
-        renderer_.RenderBlended(map_, frames, bands_, Planes(panorama_), runner_);
+        renderer_.RenderBlended(map_, reduction_.Update(frames, runner_), bands_, Planes(panorama_),
+                                runner_);
     }
     ++shown_;
     result_ = {.picture = {format_,
@@ -137,7 +139,8 @@ hal::FrameView Pipeline::RenderView(algo::Unit unit) {
     HV_EXPECT(shown_ > 0);
     map_.SelectUnit(unit);
     const algo::RigFrames frames = Borrow(held_[(shown_ - 1) % held_.size()]);
-    renderer_.Render(map_, frames, algo::NoData::kBlack, Planes(view_), runner_);
+    renderer_.Render(map_, reduction_.Update(frames, runner_), algo::NoData::kBlack, Planes(view_),
+                     runner_);
     map_.SelectBoth();
     return {format_, result_.picture.header, hal::PackedPlanes(format_, view_.data())};
 }

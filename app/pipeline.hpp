@@ -9,6 +9,7 @@
 #include "algo/multiband_blend.hpp"
 #include "algo/panorama_renderer.hpp"
 #include "algo/path_smoother.hpp"
+#include "algo/picture_reduction.hpp"
 #include "algo/vertex_motion.hpp"
 #include "app/frame_set.hpp"
 #include "app/rig_geometry.hpp"
@@ -65,6 +66,7 @@ class Pipeline {
     algo::ExposureGains exposure_;
     algo::CameraGains gains_;
     algo::MultibandBlend bands_;
+    algo::PictureReduction reduction_;
     algo::PanoramaRenderer renderer_;
 
     hal::FrameFormat format_;
