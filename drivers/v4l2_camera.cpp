@@ -161,6 +161,8 @@ V4l2Failure V4l2Camera::ReasonOfError() {
 void V4l2Camera::Drain() {
     while (Wait(milliseconds(0)).frame && buffers_.Dequeue(device_)) {
     }
+    // It has been filling buffers, or had none left: how long nobody asked says nothing about it.
+    heard_at_ = Now();
 }
 
 V4l2Camera::MaybeAnswer V4l2Camera::TakeFrame() {

@@ -115,6 +115,15 @@ TEST_F(V4l2CameraTest, SilenceRestartsTheStreamOnceAndThenEndsIt) {
     EXPECT_TRUE(camera_->WaitFrame(milliseconds(100)).ok());
 }
 
+TEST_F(V4l2CameraTest, TimeInWhichNobodyAsksIsNoSilence) {
+    options_.silence_periods = 20;  // 200 ms
+    auto camera = V4l2Camera::Open(options_, kernel_);
+    ASSERT_TRUE(camera.ok()) << camera.error();
+    std::this_thread::sleep_for(milliseconds(250));
+    EXPECT_EQ((*camera)->WaitFrame(milliseconds(1)).error(), Error::kTimeout);
+    EXPECT_EQ(kernel_.stream_starts, 1);
+}
+
 TEST_F(V4l2CameraTest, AFrameHeldThroughAReopenKeepsItsMemory) {
     V4l2Camera& camera = Open();
     Script(0, 1);
