@@ -1,5 +1,6 @@
 #include "drivers/libcamera_stamps.hpp"
 
+#include <algorithm>
 #include <ctime>
 
 namespace hitchview::drivers {
@@ -18,8 +19,9 @@ BootClocks BootClocks::Now() {
 }
 
 hal::Instant LibcameraStampClock::ToMonotonic(hal::Instant stamp, const BootClocks& now) {
-    boottime_ = boottime_ || stamp > now.monotonic;
-    return boottime_ ? stamp - (now.boottime - now.monotonic) : stamp;
+    boottime_ = boottime_ || (stamp > now.monotonic && stamp <= now.boottime);
+    const hal::Instant monotonic = boottime_ ? stamp - (now.boottime - now.monotonic) : stamp;
+    return std::min(monotonic, now.monotonic);
 }
 
 }  // namespace hitchview::drivers

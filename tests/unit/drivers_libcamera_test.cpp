@@ -123,6 +123,13 @@ TEST(LibcameraStampTest, AMonotonicStampStaysThoughTheMachineHasSlept) {
     EXPECT_EQ(clock.ToMonotonic(seconds(9), {seconds(10), seconds(110)}), seconds(9));
 }
 
+TEST(LibcameraStampTest, AStampAheadOfBothClocksIsOfNeither) {
+    LibcameraStampClock clock;
+    const BootClocks now{seconds(10), seconds(110)};
+    EXPECT_EQ(clock.ToMonotonic(seconds(111), now), seconds(10));
+    EXPECT_EQ(clock.ToMonotonic(seconds(9), now), seconds(9)) << "nor does it tell of the next one";
+}
+
 TEST(LibcameraStampTest, WhatWasOnceSeenToBeBoottimeStaysIt) {
     LibcameraStampClock clock;
     EXPECT_EQ(clock.ToMonotonic(milliseconds(10010), {seconds(10), milliseconds(10040)}),

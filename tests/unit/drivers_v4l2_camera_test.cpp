@@ -193,6 +193,16 @@ TEST_F(V4l2CameraTest, WithoutAMonotonicStampTheTimeOfDequeueingCounts) {
     EXPECT_GE(frame.value().view().header.captured_at, before - milliseconds(10));
 }
 
+TEST_F(V4l2CameraTest, AStampAheadOfTheClockIsReplacedByTheMomentOfDequeueing) {
+    V4l2Camera& camera = Open();
+    const auto now = [] { return std::chrono::steady_clock::now().time_since_epoch(); };
+    const auto ahead = std::chrono::duration_cast<microseconds>(now()) + std::chrono::hours(1);
+    kernel_.script.push_back({0, ahead, Bytes(64 * 48), flags_});
+    const auto frame = camera.WaitFrame(milliseconds(100));
+    ASSERT_TRUE(frame.ok());
+    EXPECT_LE(frame.value().view().header.captured_at, now());
+}
+
 TEST_F(V4l2CameraTest, ShortAndMarkedFramesAreCorrupted) {
     V4l2Camera& camera = Open();
     Script(0, 1, Bytes(64 * 48 - 1));
