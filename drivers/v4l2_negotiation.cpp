@@ -12,6 +12,13 @@ std::string SizeText(int width_px, int height_px) {
     return std::to_string(width_px) + "x" + std::to_string(height_px);
 }
 
+/// What else is wrong with it.
+std::string FaultText(const V4l2Layout& layout) {
+    if (layout.interlaced) return " interlaced";
+    if (HoldsLines(layout)) return "";
+    return " in lines of " + std::to_string(layout.planes[0].line_bytes) + " bytes";
+}
+
 std::string FormatText(std::uint32_t fourcc, int width_px, int height_px, double rate_hz) {
     return FourccText(fourcc) + " " + SizeText(width_px, height_px) + " at " + RateText(rate_hz) +
            " Hz";
@@ -57,15 +64,14 @@ Checked<Done> V4l2Negotiation::Check(const V4l2Granted& granted) const {
     const bool same = layout.fourcc == pixel_format_->fourcc &&
                       layout.width_px == wish.size.width_px &&
                       layout.height_px == wish.size.height_px && !layout.interlaced &&
-                      layout.memory_planes == pixel_format_->memory_planes;
+                      layout.memory_planes == pixel_format_->memory_planes && HoldsLines(layout);
     if (same && SameRate(granted.rate_hz, wish.rate_hz)) return Done{};
     return "wanted " +
            FormatText(pixel_format_->fourcc, wish.size.width_px, wish.size.height_px,
                       wish.rate_hz) +
            ", got " +
            FormatText(layout.fourcc, layout.width_px, layout.height_px, granted.rate_hz) +
-           (layout.interlaced ? " interlaced" : "") +
-           "; offered: " + OffersText(ListOffers(device_, wish.size));
+           FaultText(layout) + "; offered: " + OffersText(ListOffers(device_, wish.size));
 }
 
 V4l2Result<Done> V4l2Negotiation::Connect() {
@@ -117,7 +123,8 @@ bool V4l2Negotiation::IsSameDevice() const {
 bool V4l2Negotiation::IsSameFormat(const V4l2Granted& granted) const {
     V4l2Layout there = granted.layout;
     there.planes = first_.layout.planes;  // frames carry the length of their lines
-    return there == first_.layout && SameRate(granted.rate_hz, first_.rate_hz);
+    return there == first_.layout && HoldsLines(granted.layout) &&
+           SameRate(granted.rate_hz, first_.rate_hz);
 }
 
 }  // namespace hitchview::drivers

@@ -221,6 +221,20 @@ TEST_F(V4l2CameraTest, WhatTheDriverChangedIsToldInWords) {
               "64x48 at 100 Hz");
 }
 
+TEST_F(V4l2CameraTest, LinesThatRunIntoEachOtherAreRefused) {
+    kernel_.granted_line_bytes = 63;
+    const auto refused = V4l2Camera::Open(options_, kernel_);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().find("got GREY 64x48 at 100 Hz in lines of 63 bytes"),
+              std::string::npos)
+        << refused.error();
+    kernel_.granted_line_bytes = 64;
+    V4l2Camera& camera = Open();
+    EXPECT_EQ(Answer(), Error::kDisconnected);
+    kernel_.granted_line_bytes = 0xffffffff;  // -1
+    EXPECT_EQ(camera.Reopen().error(), Error::kUnsupported);
+}
+
 TEST_F(V4l2CameraTest, ADeviceWithoutARateSettingIsTakenAtItsWord) {
     kernel_.has_rate = false;
     EXPECT_FALSE(Open().facts().granted.rate_is_set);
