@@ -1,6 +1,7 @@
 #include "app/camera_table.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <sstream>
 #include <utility>
 
@@ -70,7 +71,7 @@ std::string SizesText(std::vector<OfferedSizes> sizes, const CameraDevice& devic
                       CameraDetail detail) {
     const auto rank = [&](const OfferedSizes& each) {
         const bool picked = device.pick && SizeText(device.pick->size_px) == SizeText(each.largest);
-        return std::pair(picked, each.largest.width_px * each.largest.height_px);
+        return std::pair(picked, std::int64_t{each.largest.width_px} * each.largest.height_px);
     };
     std::ranges::stable_sort(sizes, std::ranges::greater{}, rank);
     std::size_t left_out = 0;

@@ -18,19 +18,21 @@ std::vector<V4l2Rates> ListRates(const V4l2Device& device, std::uint32_t fourcc,
     interval.pixel_format = fourcc;
     interval.width = static_cast<std::uint32_t>(size.width_px);
     interval.height = static_cast<std::uint32_t>(size.height_px);
-    while (device.Call(VIDIOC_ENUM_FRAMEINTERVALS, "VIDIOC_ENUM_FRAMEINTERVALS", interval)) {
+    for (; interval.index < kMostListed; ++interval.index) {
+        if (!device.Call(VIDIOC_ENUM_FRAMEINTERVALS, "VIDIOC_ENUM_FRAMEINTERVALS", interval)) break;
         if (interval.type != V4L2_FRMIVAL_TYPE_DISCRETE) {
             rates.push_back({Hertz(interval.stepwise.max), Hertz(interval.stepwise.min)});
             break;
         }
         rates.push_back({Hertz(interval.discrete), Hertz(interval.discrete)});
-        ++interval.index;
     }
     return rates;
 }
 
 V4l2Sizes SizesOf(const v4l2_frmsizeenum& size) {
-    const auto px = [](std::uint32_t value) { return static_cast<int>(value); };
+    // Larger than any picture, and safe to calculate with.
+    static constexpr std::uint32_t kMost_px = 1U << 20;
+    const auto px = [](std::uint32_t value) { return static_cast<int>(std::min(value, kMost_px)); };
     if (size.type == V4L2_FRMSIZE_TYPE_DISCRETE) {
         const int width = px(size.discrete.width);
         const int height = px(size.discrete.height);
@@ -57,13 +59,13 @@ std::vector<V4l2Sizes> ListSizes(const V4l2Device& device, std::uint32_t fourcc,
     std::vector<V4l2Sizes> list;
     v4l2_frmsizeenum size{};
     size.pixel_format = fourcc;
-    while (device.Call(VIDIOC_ENUM_FRAMESIZES, "VIDIOC_ENUM_FRAMESIZES", size)) {
+    for (; size.index < kMostListed; ++size.index) {
+        if (!device.Call(VIDIOC_ENUM_FRAMESIZES, "VIDIOC_ENUM_FRAMESIZES", size)) break;
         V4l2Sizes sizes = SizesOf(size);
         const V4l2Size largest{sizes.max_width_px, sizes.max_height_px};
         sizes.rates = ListRates(device, fourcc, Contains(sizes, wanted) ? wanted : largest);
         list.push_back(std::move(sizes));
         if (size.type != V4L2_FRMSIZE_TYPE_DISCRETE) break;
-        ++size.index;
     }
     return list;
 }
@@ -127,7 +129,8 @@ std::vector<V4l2FormatOffer> ListOffers(const V4l2Device& device, V4l2Size wante
     std::vector<V4l2FormatOffer> offers;
     v4l2_fmtdesc format{};
     format.type = device.buffer_type();
-    while (device.Call(VIDIOC_ENUM_FMT, "VIDIOC_ENUM_FMT", format)) {
+    for (; format.index < kMostListed; ++format.index) {
+        if (!device.Call(VIDIOC_ENUM_FMT, "VIDIOC_ENUM_FMT", format)) break;
         const auto* text = reinterpret_cast<const char*>(format.description);
         V4l2FormatOffer offer{format.pixelformat, FieldText({text, sizeof format.description}), {}};
         // Of a format that we do not take, neither sizes nor rates matter.
@@ -135,7 +138,6 @@ std::vector<V4l2FormatOffer> ListOffers(const V4l2Device& device, V4l2Size wante
             offer.sizes = ListSizes(device, offer.fourcc, wanted);
         }
         offers.push_back(std::move(offer));
-        ++format.index;
     }
     return offers;
 }

@@ -38,6 +38,9 @@ struct V4l2Size {
     int height_px = 0;
 };
 
+/// A list of a device is read no further than this: there are drivers whose lists never end.
+inline constexpr std::uint32_t kMostListed = 64;
+
 /// Everything the device lists, by enumeration, in its own order. Of sizes that are a range, the
 /// rates are those at `wanted`, or at the largest where `wanted` is not in it. Set-up only.
 std::vector<V4l2FormatOffer> ListOffers(const V4l2Device& device, V4l2Size wanted);

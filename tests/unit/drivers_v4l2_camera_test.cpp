@@ -235,6 +235,15 @@ TEST_F(V4l2CameraTest, LinesThatRunIntoEachOtherAreRefused) {
     EXPECT_EQ(camera.Reopen().error(), Error::kUnsupported);
 }
 
+TEST_F(V4l2CameraTest, ListsThatNeverEndAreCutOff) {
+    kernel_.lists_end = false;
+    kernel_.controls[V4L2_CID_BRIGHTNESS] = 1;
+    kernel_.control_type = V4L2_CTRL_TYPE_MENU;
+    options_.controls = {{"nothing", "1"}};
+    EXPECT_NE(V4l2Camera::Open(options_, kernel_).error().find("control nothing is not there"),
+              std::string::npos);
+}
+
 TEST_F(V4l2CameraTest, ADeviceWithoutARateSettingIsTakenAtItsWord) {
     kernel_.has_rate = false;
     EXPECT_FALSE(Open().facts().granted.rate_is_set);
