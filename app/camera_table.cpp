@@ -145,6 +145,12 @@ std::string Details(const CameraDevice& device, CameraDetail detail) {
     return text;
 }
 
+const char* StateOf(const CameraMatch& match) {
+    if (!match.looked_for) return "not checked";
+    if (match.problem.empty()) return "there";
+    return match.device.empty() ? "MISSING" : "UNUSABLE";
+}
+
 }  // namespace
 
 std::string CameraTable(const std::vector<CameraDevice>& devices, CameraDetail detail) {
@@ -166,12 +172,10 @@ std::string CameraTable(const std::vector<CameraDevice>& devices, CameraDetail d
 std::string MatchTable(const std::vector<CameraMatch>& matches) {
     TextTable table({"UNIT", "CAMERA", "STATE", "DEVICE"});
     for (const CameraMatch& match : matches) {
-        const char* const unusable = match.device.empty() ? "MISSING" : "UNUSABLE";
-        table.Add(
-            {algo::ToString(match.unit), match.name, match.problem.empty() ? "there" : unusable,
-             match.device.empty() ? "none" : match.device},
-            DetailLines("name", match.configured) +
-                (match.problem.empty() ? "" : DetailLines("why", match.problem)));
+        table.Add({algo::ToString(match.unit), match.name, StateOf(match),
+                   match.device.empty() ? "none" : match.device},
+                  DetailLines("name", match.configured) +
+                      (match.problem.empty() ? "" : DetailLines("why", match.problem)));
     }
     return table.Text();
 }

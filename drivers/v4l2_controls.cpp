@@ -202,6 +202,17 @@ hal::Checked<std::vector<V4l2ControlValue>> PlanOrientation(
     return values;
 }
 
+hal::Checked<std::vector<V4l2ControlValue>> PlanSettings(
+    const std::vector<V4l2Control>& controls, const V4l2Orientation& orientation,
+    const std::vector<V4l2ControlWish>& wishes) {
+    auto settings = PlanOrientation(controls, orientation);
+    if (!settings) return settings;
+    const auto values = PlanControls(controls, wishes);
+    if (!values) return values.error();
+    settings->insert(settings->end(), values.value().begin(), values.value().end());
+    return settings;
+}
+
 V4l2Result<hal::Done> SetControl(const V4l2Device& device, const V4l2ControlValue& value) {
     v4l2_ext_control control{};
     control.id = value.id;

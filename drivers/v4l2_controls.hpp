@@ -64,6 +64,11 @@ struct V4l2Orientation {
 hal::Checked<std::vector<V4l2ControlValue>> PlanOrientation(
     const std::vector<V4l2Control>& controls, const V4l2Orientation& orientation);
 
+/// The orientation, then the wishes. Pure.
+hal::Checked<std::vector<V4l2ControlValue>> PlanSettings(
+    const std::vector<V4l2Control>& controls, const V4l2Orientation& orientation,
+    const std::vector<V4l2ControlWish>& wishes);
+
 /// No memory from the heap.
 V4l2Result<hal::Done> SetControl(const V4l2Device& device, const V4l2ControlValue& value);
 

@@ -48,12 +48,9 @@ Checked<Done> V4l2Negotiation::Choose() {
     pixel_format_ = chosen.value();
     const auto menus = options_.controls.empty() ? V4l2Menus::kLeftOut : V4l2Menus::kListed;
     const std::vector<V4l2Control> controls = ListControls(device_, menus);
-    auto mirrors = PlanOrientation(controls, options_.orientation);
-    if (!mirrors) return mirrors.error();
-    const auto values = PlanControls(controls, options_.controls);
-    if (!values) return values.error();
-    control_values_ = std::move(mirrors.value());
-    control_values_.insert(control_values_.end(), values.value().begin(), values.value().end());
+    auto settings = PlanSettings(controls, options_.orientation, options_.controls);
+    if (!settings) return settings.error();
+    control_values_ = std::move(settings.value());
     has_exposure_ = HasExposure(controls);
     return Done{};
 }

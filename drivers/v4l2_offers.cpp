@@ -142,6 +142,17 @@ std::vector<V4l2FormatOffer> ListOffers(const V4l2Device& device, V4l2Size wante
     return offers;
 }
 
+std::vector<std::string> ListInputs(const V4l2Device& device) {
+    std::vector<std::string> inputs;
+    v4l2_input input{};
+    for (; input.index < kMostListed; ++input.index) {
+        if (!device.Call(VIDIOC_ENUMINPUT, "VIDIOC_ENUMINPUT", input)) break;
+        const auto* text = reinterpret_cast<const char*>(input.name);
+        inputs.push_back(FieldText({text, sizeof input.name}));
+    }
+    return inputs;
+}
+
 std::string OffersText(const std::vector<V4l2FormatOffer>& offers) {
     std::string text;
     for (const V4l2FormatOffer& offer : offers) {

@@ -45,6 +45,9 @@ inline constexpr std::uint32_t kMostListed = 64;
 /// rates are those at `wanted`, or at the largest where `wanted` is not in it. Set-up only.
 std::vector<V4l2FormatOffer> ListOffers(const V4l2Device& device, V4l2Size wanted);
 
+/// Names of the inputs, by number; empty: the device has no such choice. Set-up only.
+std::vector<std::string> ListInputs(const V4l2Device& device);
+
 /// "UYVY 640x480 at 30, 15 Hz; YUYV 16x16..1920x1080"; what this driver does not take, left out.
 std::string OffersText(const std::vector<V4l2FormatOffer>& offers);
 
