@@ -7,6 +7,9 @@
 namespace hitchview::drivers {
 namespace {
 
+constexpr std::uint32_t kMostFormats = 256;
+constexpr std::uint32_t kMostListed = 64;  // of each other kind
+
 double Hertz(const v4l2_fract& interval) {
     return interval.numerator == 0 ? 0
                                    : static_cast<double>(interval.denominator) / interval.numerator;
@@ -129,7 +132,7 @@ std::vector<V4l2FormatOffer> ListOffers(const V4l2Device& device, V4l2Size wante
     std::vector<V4l2FormatOffer> offers;
     v4l2_fmtdesc format{};
     format.type = device.buffer_type();
-    for (; format.index < kMostListed; ++format.index) {
+    for (; format.index < kMostFormats; ++format.index) {
         if (!device.Call(VIDIOC_ENUM_FMT, "VIDIOC_ENUM_FMT", format)) break;
         const auto* text = reinterpret_cast<const char*>(format.description);
         V4l2FormatOffer offer{format.pixelformat, FieldText({text, sizeof format.description}), {}};
