@@ -47,7 +47,7 @@ class V4l2CameraTest : public testing::Test {
         return *camera_;
     }
 
-    Error Answer() { return camera_->WaitFrame(milliseconds(200)).error(); }
+    Error Answer() { return camera_->WaitFrame(std::chrono::seconds(10)).error(); }
 
     tests::FakeV4l2Kernel kernel_;
     V4l2CameraOptions options_;
