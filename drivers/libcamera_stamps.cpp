@@ -1,21 +1,12 @@
 #include "drivers/libcamera_stamps.hpp"
 
 #include <algorithm>
-#include <ctime>
+
+#include "drivers/frame_clock.hpp"
 
 namespace hitchview::drivers {
-namespace {
-
-hal::Instant Read(clockid_t clock) {
-    timespec time{};
-    clock_gettime(clock, &time);
-    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
-}
-
-}  // namespace
-
 BootClocks BootClocks::Now() {
-    return {Read(CLOCK_MONOTONIC), Read(CLOCK_BOOTTIME)};
+    return {ReadClock(CLOCK_MONOTONIC), ReadClock(CLOCK_BOOTTIME)};
 }
 
 hal::Instant LibcameraStampClock::ToMonotonic(hal::Instant stamp, const BootClocks& now) {

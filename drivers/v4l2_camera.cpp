@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "drivers/frame_clock.hpp"
 #include "drivers/v4l2_bandwidth.hpp"
 
 namespace hitchview::drivers {
@@ -17,10 +18,6 @@ using hal::Error;
 using hal::FrameLease;
 using hal::Result;
 using std::chrono::milliseconds;
-
-hal::Instant Now() {
-    return std::chrono::steady_clock::now().time_since_epoch();
-}
 
 /// Without the heap: the words are glibc's own.
 const char* Words(const V4l2Failure& failure) {
@@ -176,8 +173,8 @@ V4l2Camera::MaybeAnswer V4l2Camera::TakeFrame() {
 
 V4l2Camera::MaybeAnswer V4l2Camera::Lend(const V4l2Buffers::Filled& filled) {
     // A stamp ahead of the clock is not of this clock, whatever the driver says.
-    const V4l2StampSource source = filled.stamp > heard_at_ ? V4l2StampSource::kDequeue
-                                                            : StampSourceOf(filled.flags);
+    const V4l2StampSource source =
+        filled.stamp > heard_at_ ? V4l2StampSource::kDequeue : StampSourceOf(filled.flags);
     const hal::Instant stamp = source == V4l2StampSource::kDequeue ? heard_at_ : filled.stamp;
     const auto maybe_planes = PlanesOf(facts_.granted.layout, filled.payload);
     const bool damaged =

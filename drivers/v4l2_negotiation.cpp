@@ -8,10 +8,6 @@ namespace {
 using hal::Checked;
 using hal::Done;
 
-std::string SizeText(int width_px, int height_px) {
-    return std::to_string(width_px) + "x" + std::to_string(height_px);
-}
-
 /// What else is wrong with it.
 std::string FaultText(const V4l2Layout& layout) {
     if (layout.interlaced) return " interlaced";
@@ -19,9 +15,8 @@ std::string FaultText(const V4l2Layout& layout) {
     return " in lines of " + std::to_string(layout.planes[0].line_bytes) + " bytes";
 }
 
-std::string FormatText(std::uint32_t fourcc, int width_px, int height_px, double rate_hz) {
-    return FourccText(fourcc) + " " + SizeText(width_px, height_px) + " at " + RateText(rate_hz) +
-           " Hz";
+std::string FormatText(std::uint32_t fourcc, V4l2Size size, double rate_hz) {
+    return FourccText(fourcc) + " " + SizeText(size) + " at " + RateText(rate_hz) + " Hz";
 }
 
 }  // namespace
@@ -30,7 +25,7 @@ Checked<V4l2Granted> V4l2Negotiation::Agree() {
     const V4l2Size& size = options_.wish.size;
     if (size.width_px <= 0 || size.height_px <= 0 || size.width_px % 2 != 0 ||
         size.height_px % 2 != 0) {
-        return "size is " + SizeText(size.width_px, size.height_px) + ", must be even";
+        return "size is " + SizeText(size) + ", must be even";
     }
     if (const auto connected = Connect(); !connected) return ToString(connected.error());
     identity_ = device_.identity();
@@ -63,11 +58,8 @@ Checked<Done> V4l2Negotiation::Check(const V4l2Granted& granted) const {
                       layout.height_px == wish.size.height_px && !layout.interlaced &&
                       layout.memory_planes == pixel_format_->memory_planes && HoldsLines(layout);
     if (same && SameRate(granted.rate_hz, wish.rate_hz)) return Done{};
-    return "wanted " +
-           FormatText(pixel_format_->fourcc, wish.size.width_px, wish.size.height_px,
-                      wish.rate_hz) +
-           ", got " +
-           FormatText(layout.fourcc, layout.width_px, layout.height_px, granted.rate_hz) +
+    return "wanted " + FormatText(pixel_format_->fourcc, wish.size, wish.rate_hz) + ", got " +
+           FormatText(layout.fourcc, {layout.width_px, layout.height_px}, granted.rate_hz) +
            FaultText(layout) + "; offered: " + OffersText(ListOffers(device_, wish.size));
 }
 

@@ -86,14 +86,10 @@ bool Has(const V4l2FormatOffer& offer, const V4l2Wish& wish) {
            });
 }
 
-std::string SizeText(int width_px, int height_px) {
-    return std::to_string(width_px) + "x" + std::to_string(height_px);
-}
-
 std::string SizesText(const V4l2Sizes& sizes) {
-    std::string text = SizeText(sizes.min_width_px, sizes.min_height_px);
+    std::string text = SizeText({sizes.min_width_px, sizes.min_height_px});
     if (sizes.max_width_px != sizes.min_width_px || sizes.max_height_px != sizes.min_height_px) {
-        text += ".." + SizeText(sizes.max_width_px, sizes.max_height_px);
+        text += ".." + SizeText({sizes.max_width_px, sizes.max_height_px});
     }
     const char* separator = " at ";
     for (const V4l2Rates& rates : sizes.rates) {
@@ -105,8 +101,7 @@ std::string SizesText(const V4l2Sizes& sizes) {
 }
 
 std::string WishText(const V4l2Wish& wish) {
-    return SizeText(wish.size.width_px, wish.size.height_px) + " at " + RateText(wish.rate_hz) +
-           " Hz as " + wish.format;
+    return SizeText(wish.size) + " at " + RateText(wish.rate_hz) + " Hz as " + wish.format;
 }
 
 std::string FormatNames() {
@@ -120,6 +115,10 @@ std::string FormatNames() {
 
 bool SameRate(double a_hz, double b_hz) {
     return std::abs(a_hz - b_hz) <= 0.01 * std::max(a_hz, b_hz);
+}
+
+std::string SizeText(V4l2Size size) {
+    return std::to_string(size.width_px) + "x" + std::to_string(size.height_px);
 }
 
 std::string RateText(double rate_hz) {

@@ -65,6 +65,9 @@ hal::Checked<const V4l2PixelFormat*> ChooseFormat(const std::vector<V4l2FormatOf
 /// Within 1 %: 29.97 is 30.
 bool SameRate(double a_hz, double b_hz);
 
+/// "1280x720".
+std::string SizeText(V4l2Size size);
+
 /// 30 -> "30", 29.97 -> "29.97".
 std::string RateText(double rate_hz);
 
