@@ -122,7 +122,9 @@ V4l2Camera::MaybeAnswer V4l2Camera::Step(milliseconds timeout) {
     const Woken woken = Wait(timeout);
     if (woken.error) return Lose(ReasonOfError());
     if (woken.event && TakeSourceChange(device_)) return FollowSource();
-    if (woken.frame) return TakeFrame();
+    if (woken.frame) {
+        if (auto answer = TakeFrame()) return answer;
+    }
     const auto watched = Watch();
     if (!watched) return Lose(watched.error());
     return std::nullopt;

@@ -38,7 +38,8 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
     bool there = true;
     bool exports = true;
     bool has_rate = true;
-    bool lists_end = true;  ///< false: enumerations tell the same at every index, controls too
+    bool poll_lies = false;  ///< a frame is told to be ready, and there is none
+    bool lists_end = true;   ///< false: enumerations tell the same at every index, controls too
     std::map<std::uint32_t, int> controls;
     std::uint32_t control_type = V4L2_CTRL_TYPE_INTEGER;
     std::deque<Frame> script;  ///< handed out as buffers are queued
@@ -74,7 +75,7 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
     int Poll(std::span<pollfd> files, std::chrono::milliseconds timeout) override {
         pollfd& device = files[0];
         device.revents = 0;
-        if (!script.empty() && !queued_.empty()) {
+        if (poll_lies || (!script.empty() && !queued_.empty())) {
             device.revents = POLLIN;
         } else if (drivers::SystemKernel().Poll(files.subspan(1), timeout) == 0) {
             return 0;

@@ -115,6 +115,13 @@ TEST_F(V4l2CameraTest, SilenceRestartsTheStreamOnceAndThenEndsIt) {
     EXPECT_TRUE(camera_->WaitFrame(milliseconds(100)).ok());
 }
 
+TEST_F(V4l2CameraTest, ADeviceThatPromisesFramesAndGivesNoneIsSilentToo) {
+    Open();
+    kernel_.poll_lies = true;
+    EXPECT_EQ(Answer(), Error::kDisconnected);
+    EXPECT_EQ(kernel_.stream_starts, 2);
+}
+
 TEST_F(V4l2CameraTest, TimeInWhichNobodyAsksIsNoSilence) {
     options_.silence_periods = 20;  // 200 ms
     auto camera = V4l2Camera::Open(options_, kernel_);
