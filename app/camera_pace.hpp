@@ -7,40 +7,27 @@
 
 namespace hitchview::app {
 
-/// How fast a camera's own clock runs, from the moments and numbers of its frames; since it was
-/// last away, as nobody numbers the frames of that time. Thread: one.
+/// How fast a camera's own clock runs, from the moments and numbers of its frames. Thread: one.
 class CameraPace {
  public:
     void Add(const hal::FrameHeader& frame) {
-        if (!Follows(frame)) first_ = frame;
+        if (!first_ || frame.captured_at <= newest_.captured_at) first_ = frame;
         newest_ = frame;
     }
 
-    /// Mean time from one frame to the next; empty before the second.
+    /// The camera has gone: nobody numbers the frames until it is back.
+    void Restart() { first_.reset(); }
+
+    /// Mean time from one frame to the next, since the last Restart; empty before the second.
     [[nodiscard]] std::optional<double> period_ms() const {
-        const auto maybe_ns = period_ns();
-        return maybe_ns ? std::optional(1e-6 * *maybe_ns) : std::nullopt;
+        if (!first_) return std::nullopt;
+        const std::uint32_t steps = newest_.sequence - first_->sequence;
+        if (steps == 0) return std::nullopt;
+        return 1e-6 * static_cast<double>((newest_.captured_at - first_->captured_at).count()) /
+               steps;
     }
 
  private:
-    [[nodiscard]] std::optional<double> period_ns() const {
-        if (!first_ || newest_.sequence == first_->sequence) return std::nullopt;
-        return PerStep(*first_, newest_);
-    }
-
-    static double PerStep(const hal::FrameHeader& early, const hal::FrameHeader& late) {
-        return static_cast<double>((late.captured_at - early.captured_at).count()) /
-               (late.sequence - early.sequence);
-    }
-
-    /// Later than the newest one, by as many periods as its number says.
-    [[nodiscard]] bool Follows(const hal::FrameHeader& frame) const {
-        if (!first_ || frame.captured_at <= newest_.captured_at) return false;
-        if (frame.sequence == newest_.sequence) return false;
-        const auto maybe_ns = period_ns();
-        return !maybe_ns || PerStep(newest_, frame) < 1.5 * *maybe_ns;
-    }
-
     std::optional<hal::FrameHeader> first_;
     hal::FrameHeader newest_{};
 };

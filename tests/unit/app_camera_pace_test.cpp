@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "app/camera_pace.hpp"
+#include "app/frame_inbox.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -28,10 +29,15 @@ TEST(CameraPaceTest, LostFramesThatAreNumberedDoNotMatter) {
 }
 
 TEST(CameraPaceTest, TimeInWhichACameraWasAwayIsNoPartOfItsPeriod) {
-    CameraPace pace;
-    AddFrames(pace, 10, 0, milliseconds(7));
-    AddFrames(pace, 10, 10, milliseconds(60'000));
-    EXPECT_DOUBLE_EQ(pace.period_ms().value(), 40);
+    hal::FramePool pool({16, 16}, 4);
+    FrameInbox inbox(1, milliseconds(0));
+    const auto put = [&](std::uint32_t sequence, milliseconds at) {
+        inbox.Put(0, pool.Lease(pool.Take().value(), {sequence, at}), at);
+    };
+    for (std::uint32_t i = 0; i < 10; ++i) put(i, i * milliseconds(40));
+    inbox.SetConnected(0, false);
+    for (std::uint32_t i = 10; i < 20; ++i) put(i, milliseconds(60'000) + i * milliseconds(40));
+    EXPECT_DOUBLE_EQ(inbox.pace(0).period_ms().value(), 40);
 }
 
 TEST(CameraPaceTest, AStampThatStepsBackIsMeasuredAfresh) {
