@@ -174,9 +174,10 @@ V4l2Camera::MaybeAnswer V4l2Camera::TakeFrame() {
 }
 
 V4l2Camera::MaybeAnswer V4l2Camera::Lend(const V4l2Buffers::Filled& filled) {
-    // A stamp ahead of the clock is not of this clock, whatever the driver says.
-    const V4l2StampSource source =
-        filled.stamp > heard_at_ ? V4l2StampSource::kDequeue : StampSourceOf(filled.flags);
+    // A driver may tell the end of a frame that is still to come; a stamp further ahead is not of
+    // this clock, whatever the driver says.
+    const V4l2StampSource source = filled.stamp > heard_at_ + period_ ? V4l2StampSource::kDequeue
+                                                                      : StampSourceOf(filled.flags);
     const hal::Instant stamp = source == V4l2StampSource::kDequeue ? heard_at_ : filled.stamp;
     const auto maybe_planes = PlanesOf(facts_.granted.layout, filled.payload);
     const bool damaged =
