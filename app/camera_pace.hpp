@@ -15,7 +15,10 @@ class CameraPace {
         newest_ = frame;
     }
 
-    /// Mean time from one frame to the next; empty before the second.
+    /// The camera has gone: nobody numbers the frames until it is back.
+    void Restart() { first_.reset(); }
+
+    /// Mean time from one frame to the next, since the last Restart; empty before the second.
     [[nodiscard]] std::optional<double> period_ms() const {
         if (!first_) return std::nullopt;
         const std::uint32_t steps = newest_.sequence - first_->sequence;

@@ -24,7 +24,9 @@ void FrameInbox::Put(std::size_t camera, hal::FrameLease frame, hal::Instant now
 
 void FrameInbox::SetConnected(std::size_t camera, bool connected) {
     const std::lock_guard lock(mutex_);
-    places_[camera].connected = connected;
+    Place& place = places_[camera];
+    place.connected = connected;
+    if (!connected) place.pace.Restart();
     changed_.notify_one();
 }
 

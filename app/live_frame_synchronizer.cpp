@@ -29,6 +29,12 @@ void LiveFrameSynchronizer::Finish() {
     threads_.clear();
 }
 
+void LiveFrameSynchronizer::StartCounting() {
+    counts_ = {};
+    spread_ = {};
+    sequence_ = 0;
+}
+
 hal::Result<FrameSet> LiveFrameSynchronizer::DoWaitSet() {
     FrameInbox::Visit visit(inbox_);
     while (true) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "drivers/frame_clock.hpp"
 #include "drivers/v4l2_bandwidth.hpp"
 
 namespace hitchview::drivers {
@@ -17,10 +18,6 @@ using hal::Error;
 using hal::FrameLease;
 using hal::Result;
 using std::chrono::milliseconds;
-
-hal::Instant Now() {
-    return std::chrono::steady_clock::now().time_since_epoch();
-}
 
 /// Without the heap: the words are glibc's own.
 const char* Words(const V4l2Failure& failure) {
@@ -125,7 +122,9 @@ V4l2Camera::MaybeAnswer V4l2Camera::Step(milliseconds timeout) {
     const Woken woken = Wait(timeout);
     if (woken.error) return Lose(ReasonOfError());
     if (woken.event && TakeSourceChange(device_)) return FollowSource();
-    if (woken.frame) return TakeFrame();
+    if (woken.frame) {
+        if (auto answer = TakeFrame()) return answer;
+    }
     const auto watched = Watch();
     if (!watched) return Lose(watched.error());
     return std::nullopt;
@@ -161,6 +160,8 @@ V4l2Failure V4l2Camera::ReasonOfError() {
 void V4l2Camera::Drain() {
     while (Wait(milliseconds(0)).frame && buffers_.Dequeue(device_)) {
     }
+    // It has been filling buffers, or had none left: how long nobody asked says nothing about it.
+    heard_at_ = Now();
 }
 
 V4l2Camera::MaybeAnswer V4l2Camera::TakeFrame() {
@@ -173,7 +174,10 @@ V4l2Camera::MaybeAnswer V4l2Camera::TakeFrame() {
 }
 
 V4l2Camera::MaybeAnswer V4l2Camera::Lend(const V4l2Buffers::Filled& filled) {
-    const V4l2StampSource source = StampSourceOf(filled.flags);
+    // A driver may tell the end of a frame that is still to come; a stamp further ahead is not of
+    // this clock, whatever the driver says.
+    const V4l2StampSource source = filled.stamp > heard_at_ + period_ ? V4l2StampSource::kDequeue
+                                                                      : StampSourceOf(filled.flags);
     const hal::Instant stamp = source == V4l2StampSource::kDequeue ? heard_at_ : filled.stamp;
     const auto maybe_planes = PlanesOf(facts_.granted.layout, filled.payload);
     const bool damaged =
