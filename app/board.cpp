@@ -4,9 +4,9 @@
 #include <string>
 
 #include "app/camera_ahead.hpp"
+#include "app/live_camera_options.hpp"
 #include "drivers/candump_can_bus.hpp"
 #include "drivers/lcm_publisher.hpp"
-#include "drivers/libcamera_camera.hpp"
 #include "drivers/replay_camera.hpp"
 #include "drivers/simulated_camera.hpp"
 #include "drivers/simulated_can_bus.hpp"
@@ -71,45 +71,15 @@ int BuffersOf(const LiveCameraConfig& live, int slots) {
     return live.buffers > 0 ? live.buffers : slots + kWithTheDevice;
 }
 
-drivers::V4l2CameraOptions V4l2Options(const CameraConfig& camera, double rate_hz, int slots) {
-    const LiveCameraConfig& live = camera.live;
-    drivers::V4l2CameraOptions options;
-    options.name = camera.name;
-    options.path = live.device;
-    options.wish = {{live.size_px.width_px, live.size_px.height_px}, rate_hz, live.format};
-    options.buffers = BuffersOf(live, slots);
-    options.input = live.input;
-    options.orientation = {live.rotation_deg, live.horizontal_flip, live.vertical_flip};
-    for (const ControlConfig& control : live.controls)
-        options.controls.push_back({control.name, control.value});
-    return options;
-}
-
-drivers::LibcameraOptions LibcameraOptionsOf(const CameraConfig& camera, double rate_hz,
-                                             int slots) {
-    const LiveCameraConfig& live = camera.live;
-    drivers::LibcameraOptions options;
-    options.name = camera.name;
-    options.id = live.device;
-    options.width_px = live.size_px.width_px;
-    options.height_px = live.size_px.height_px;
-    options.accept_granted_size = live.accept_granted_size;
-    options.rate_hz = rate_hz;
-    options.format = live.format;
-    options.buffers = BuffersOf(live, slots);
-    options.rotation_deg = live.rotation_deg;
-    options.horizontal_flip = live.horizontal_flip;
-    options.vertical_flip = live.vertical_flip;
-    for (const ControlConfig& control : live.controls)
-        options.controls.push_back({control.name, control.value});
-    return options;
-}
-
 hal::Checked<std::unique_ptr<hal::Camera>> OpenLive(const CameraConfig& camera, double rate_hz,
                                                     int slots) {
-    if (camera.source == CameraConfig::Source::kLibcamera)
-        return drivers::OpenLibcamera(LibcameraOptionsOf(camera, rate_hz, slots));
-    auto opened = drivers::V4l2Camera::Open(V4l2Options(camera, rate_hz, slots));
+    const int buffers = BuffersOf(camera.live, slots);
+    if (camera.source == CameraConfig::Source::kLibcamera) {
+        return drivers::OpenLibcamera(
+            LibcameraOptionsOf(camera.name, camera.live, rate_hz, buffers));
+    }
+    auto opened =
+        drivers::V4l2Camera::Open(V4l2OptionsOf(camera.name, camera.live, rate_hz, buffers));
     if (!opened) return opened.error();
     return std::unique_ptr<hal::Camera>(std::move(*opened));
 }

@@ -29,12 +29,10 @@ struct OfferedFormat {
     std::vector<OfferedSizes> sizes{};  ///< empty: not taken, or the device does not tell
 };
 
-/// What is asked of a device: size, rate and format as in a rig file.
+/// What is asked of a device.
 struct CameraWish {
-    std::string device{};  ///< path, by any of its names; empty: whichever
-    Size size_px{1280, 720};
+    LiveCameraConfig live{};  ///< as in a rig file; without a device: of whichever
     double rate_hz = 30;
-    std::string format = "best";
 };
 
 /// What would be taken of the offers.
@@ -72,6 +70,7 @@ struct CameraDevice {
     std::vector<OfferedFormat> formats{};  ///< in the device's order
     std::optional<CameraPick> pick{};
     std::string no_pick{};             ///< what was wanted; with no pick only
+    std::string unsettable{};          ///< of the wish's input, mirrors or controls; empty: nothing
     std::optional<ReadSpeed> speed{};  ///< where it was measured
     std::string not_measured{};        ///< why not, where it was tried
 

@@ -66,6 +66,7 @@ json DeviceJson(const CameraDevice& device) {
             {"formats", formats},
             {"pick", PickJson(device.pick)},
             {"no_pick", Text(device.no_pick)},
+            {"unsettable", Text(device.unsettable)},
             {"read_speed", SpeedJson(device.speed)},
             {"not_measured", Text(device.not_measured)}};
 }
@@ -85,6 +86,7 @@ json MatchesJson(const std::vector<CameraMatch>& matches) {
                         {"camera", match.name},
                         {"configured", Text(match.configured)},
                         {"device", match.device.empty() ? json(nullptr) : json(match.device)},
+                        {"checked", match.looked_for},
                         {"problem", Text(match.problem)}});
     }
     return list;

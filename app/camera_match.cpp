@@ -18,7 +18,8 @@ std::string ProblemOfMissing(const std::string& path) {
 
 std::string ProblemOf(const CameraDevice& device) {
     if (!device.IsOpen()) return device.refusal + "; " + Remedy(device);
-    return device.no_pick;
+    const char* const separator = device.no_pick.empty() || device.unsettable.empty() ? "" : "; ";
+    return device.no_pick + separator + device.unsettable;
 }
 
 const CameraMatch* FindOwner(const std::vector<CameraMatch>& matches, const std::string& device) {
@@ -29,7 +30,11 @@ const CameraMatch* FindOwner(const std::vector<CameraMatch>& matches, const std:
 CameraMatch Match(algo::Unit unit, const CameraConfig& camera,
                   const std::vector<CameraDevice>& devices,
                   const std::vector<CameraMatch>& earlier) {
-    CameraMatch match{unit, camera.name, camera.live.device, "", ""};
+    CameraMatch match{unit, camera.name, camera.live.device, "", "", true};
+    if (camera.source == CameraConfig::Source::kLibcamera) {
+        match.looked_for = false;
+        return match;
+    }
     const auto found = std::ranges::find_if(
         devices, [&](const CameraDevice& device) { return device.IsNamed(match.configured); });
     if (found == devices.end()) {
@@ -50,9 +55,8 @@ std::vector<CameraWish> WishesOf(const RigConfig& rig) {
     std::vector<CameraWish> wishes;
     for (const algo::Unit unit : algo::kUnits) {
         for (const CameraConfig& camera : rig.units[unit].cameras) {
-            const LiveCameraConfig& live = camera.live;
-            if (camera.IsLive())
-                wishes.push_back({live.device, live.size_px, rate_hz, live.format});
+            if (camera.source == CameraConfig::Source::kV4l2)
+                wishes.push_back({camera.live, rate_hz});
         }
     }
     return wishes;

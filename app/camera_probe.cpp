@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "app/live_camera_options.hpp"
 #include "drivers/v4l2_camera.hpp"
 #include "drivers/v4l2_probe.hpp"
 
@@ -14,8 +15,9 @@ using drivers::V4l2DeviceReport;
 using drivers::V4l2FormatOffer;
 using drivers::V4l2Wish;
 
-V4l2Wish DriverWish(const CameraWish& wish) {
-    return {{wish.size_px.width_px, wish.size_px.height_px}, wish.rate_hz, wish.format};
+drivers::V4l2CameraOptions OptionsOf(const std::string& path, const CameraWish& wish) {
+    constexpr int kBuffers = 8;
+    return V4l2OptionsOf(path, wish.live, wish.rate_hz, kBuffers);
 }
 
 OfferedSizes ToOffered(const drivers::V4l2Sizes& sizes) {
@@ -67,23 +69,26 @@ std::vector<std::string> FormatsThatDo(const std::vector<V4l2FormatOffer>& offer
     return names;
 }
 
-void Pick(const std::vector<V4l2FormatOffer>& offers, const CameraWish& wish,
-          CameraDevice& device) {
-    const auto chosen = drivers::ChooseFormat(offers, DriverWish(wish));
+void Pick(const V4l2DeviceReport& report, const CameraWish& wish, CameraDevice& device) {
+    const drivers::V4l2CameraOptions options = OptionsOf(device.path, wish);
+    if (const auto settings = drivers::CheckSettings(report, options); !settings)
+        device.unsettable = settings.error();
+    const auto& [live, rate_hz] = wish;
+    const auto chosen = drivers::ChooseFormat(report.offers, options.wish);
     if (!chosen) {
-        device.no_pick = "wanted " + SizeText(wish.size_px) + " at " + RateText(wish.rate_hz) +
-                         " Hz as " + wish.format + ", which it does not offer";
+        device.no_pick = "wanted " + SizeText(live.size_px) + " at " + RateText(rate_hz) +
+                         " Hz as " + live.format + ", which it does not offer";
         return;
     }
-    CameraPick pick{chosen.value()->name, wish.size_px, wish.rate_hz, wish.format != "best", {}};
-    pick.others = FormatsThatDo(offers, DriverWish(wish));
+    CameraPick pick{chosen.value()->name, live.size_px, rate_hz, live.format != "best", {}};
+    pick.others = FormatsThatDo(report.offers, options.wish);
     std::erase(pick.others, pick.format);
     device.pick = std::move(pick);
 }
 
 CameraWish WishFor(const CameraDevice& device, const std::vector<CameraWish>& wishes) {
     const auto own = std::ranges::find_if(
-        wishes, [&](const CameraWish& wish) { return device.IsNamed(wish.device); });
+        wishes, [&](const CameraWish& wish) { return device.IsNamed(wish.live.device); });
     return own == wishes.end() ? CameraWish{} : *own;
 }
 
@@ -98,7 +103,7 @@ CameraDevice ToDevice(const V4l2DeviceReport& report, const std::vector<CameraWi
     device.refusal = report.refusal;
     device.stamps = StampsOf(report);
     for (const V4l2FormatOffer& offer : report.offers) device.formats.push_back(ToOffered(offer));
-    if (report.refusal.empty()) Pick(report.offers, WishFor(device, wishes), device);
+    if (report.refusal.empty()) Pick(report, WishFor(device, wishes), device);
     return device;
 }
 
@@ -108,12 +113,11 @@ void Measure(CameraDevice& device) {
         device.not_measured = "not measured: a program streams from it";
         return;
     }
-    drivers::V4l2CameraOptions options;
-    options.name = device.path;
-    options.path = device.path;
-    options.wish =
-        DriverWish({device.path, device.pick->size_px, device.pick->rate_hz, device.pick->format});
-    const auto camera = drivers::V4l2Camera::Open(options);
+    CameraWish wish{{}, device.pick->rate_hz};
+    wish.live.device = device.path;
+    wish.live.size_px = device.pick->size_px;
+    wish.live.format = device.pick->format;
+    const auto camera = drivers::V4l2Camera::Open(OptionsOf(device.path, wish));
     if (!camera) {
         device.not_measured = camera.error();
         return;
@@ -129,7 +133,7 @@ std::vector<CameraDevice> ProbeCameras(const std::vector<CameraWish>& wishes,
     const CameraWish first = wishes.empty() ? CameraWish{} : wishes.front();
     std::vector<CameraDevice> devices;
     for (const V4l2DeviceReport& report : drivers::ProbeV4l2Devices(
-             drivers::V4l2LinkFolders(), drivers::SystemKernel(), DriverWish(first).size)) {
+             drivers::V4l2LinkFolders(), drivers::SystemKernel(), OptionsOf("", first).wish.size)) {
         devices.push_back(ToDevice(report, wishes));
         if (measure == CameraMeasure::kReadSpeed) Measure(devices.back());
     }

@@ -1,6 +1,7 @@
 #include "app/camera_table.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <sstream>
 #include <utility>
 
@@ -70,7 +71,7 @@ std::string SizesText(std::vector<OfferedSizes> sizes, const CameraDevice& devic
                       CameraDetail detail) {
     const auto rank = [&](const OfferedSizes& each) {
         const bool picked = device.pick && SizeText(device.pick->size_px) == SizeText(each.largest);
-        return std::pair(picked, each.largest.width_px * each.largest.height_px);
+        return std::pair(picked, std::int64_t{each.largest.width_px} * each.largest.height_px);
     };
     std::ranges::stable_sort(sizes, std::ranges::greater{}, rank);
     std::size_t left_out = 0;
@@ -144,6 +145,12 @@ std::string Details(const CameraDevice& device, CameraDetail detail) {
     return text;
 }
 
+const char* StateOf(const CameraMatch& match) {
+    if (!match.looked_for) return "not checked";
+    if (match.problem.empty()) return "there";
+    return match.device.empty() ? "MISSING" : "UNUSABLE";
+}
+
 }  // namespace
 
 std::string CameraTable(const std::vector<CameraDevice>& devices, CameraDetail detail) {
@@ -165,12 +172,10 @@ std::string CameraTable(const std::vector<CameraDevice>& devices, CameraDetail d
 std::string MatchTable(const std::vector<CameraMatch>& matches) {
     TextTable table({"UNIT", "CAMERA", "STATE", "DEVICE"});
     for (const CameraMatch& match : matches) {
-        const char* const unusable = match.device.empty() ? "MISSING" : "UNUSABLE";
-        table.Add(
-            {algo::ToString(match.unit), match.name, match.problem.empty() ? "there" : unusable,
-             match.device.empty() ? "none" : match.device},
-            DetailLines("name", match.configured) +
-                (match.problem.empty() ? "" : DetailLines("why", match.problem)));
+        table.Add({algo::ToString(match.unit), match.name, StateOf(match),
+                   match.device.empty() ? "none" : match.device},
+                  DetailLines("name", match.configured) +
+                      (match.problem.empty() ? "" : DetailLines("why", match.problem)));
     }
     return table.Text();
 }

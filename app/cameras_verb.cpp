@@ -52,7 +52,9 @@ int CamerasVerb(const CamerasOptions& options) {
     const auto rig = LoadRigConfig(options.rig);
     if (!rig) return Fail(rig.error(), kWrongUse);
     if (WishesOf(rig.value()).empty()) {
-        return Fail(options.rig.string() + ": no camera is live (source: {v4l2: /dev/...})",
+        return Fail(options.rig.string() +
+                        ": no camera is a V4L2 device (source: {v4l2: /dev/...}); "
+                        "`cam --list` shows those of libcamera",
                     kWrongUse);
     }
     return Show(options, rig.value());

@@ -13,8 +13,8 @@ struct CamerasOptions {
 
 /// Tells what video devices this machine has, what would be picked of each and why, and whether a
 /// rig's are there. Returns the exit code: 0 there is one that can be opened, with a rig
-/// all of its can be used; 1 otherwise; 2 the rig file is bad or has no live camera; 3 the file
-/// cannot be written.
+/// all of its V4L2 cameras can be used; 1 otherwise; 2 the rig file is bad or has none of these; 3
+/// the file cannot be written.
 int CamerasVerb(const CamerasOptions& options);
 
 }  // namespace hitchview::app

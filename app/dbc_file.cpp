@@ -285,19 +285,9 @@ void Parser::ApplyDefaultCycle() {
 
 }  // namespace
 
-const DbcSignal* DbcMessage::FindSignal(std::string_view signal) const {
-    const auto found = std::ranges::find(signals, signal, &DbcSignal::name);
-    return found == signals.end() ? nullptr : &*found;
-}
-
 const DbcSignal* DbcMessage::FindMultiplexor() const {
     const auto found = std::ranges::find(signals, true, &DbcSignal::is_multiplexor);
     return found == signals.end() ? nullptr : &*found;
-}
-
-const DbcMessage* DbcFile::FindMessage(std::string_view message) const {
-    const auto found = std::ranges::find(messages, message, &DbcMessage::name);
-    return found == messages.end() ? nullptr : &*found;
 }
 
 Checked<DbcFile> ParseDbc(std::string_view text, const std::string& file) {

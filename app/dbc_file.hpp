@@ -48,7 +48,6 @@ struct DbcMessage {
     std::vector<DbcSignal> signals;
     std::optional<std::chrono::milliseconds> cycle_time;  ///< GenMsgCycleTime; more than 0
 
-    [[nodiscard]] const DbcSignal* FindSignal(std::string_view signal) const;
     [[nodiscard]] const DbcSignal* FindMultiplexor() const;
 };
 
@@ -59,8 +58,6 @@ struct DbcFile {
     static constexpr std::size_t kMaxTexts = 500'000;
 
     std::vector<DbcMessage> messages;  ///< in the order of the file; names and ids are unique
-
-    [[nodiscard]] const DbcMessage* FindMessage(std::string_view message) const;
 };
 
 /// Understands BO_, SG_, VAL_, SIG_VALTYPE_, SG_MUL_VAL_ and the attribute GenMsgCycleTime (BA_,

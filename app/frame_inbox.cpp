@@ -9,7 +9,7 @@ void FrameInbox::Put(std::size_t camera, hal::FrameLease frame, hal::Instant now
     const std::lock_guard lock(mutex_);
     if (closed_) return;
     Place& place = places_[camera];
-    place.pace.Add(frame.view().header, period_);
+    place.pace.Add(frame.view().header);
     auto& [head, next] = place.frames;
     if (head && next) {
         head = std::move(next);
@@ -24,7 +24,9 @@ void FrameInbox::Put(std::size_t camera, hal::FrameLease frame, hal::Instant now
 
 void FrameInbox::SetConnected(std::size_t camera, bool connected) {
     const std::lock_guard lock(mutex_);
-    places_[camera].connected = connected;
+    Place& place = places_[camera];
+    place.connected = connected;
+    if (!connected) place.pace.Restart();
     changed_.notify_one();
 }
 

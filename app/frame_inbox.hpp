@@ -24,10 +24,8 @@ struct InboxCounts {
 /// them. An older frame goes back to its camera when a newer one comes. Takes no memory.
 class FrameInbox {
  public:
-    /// `cameras`: at most kMaxCameras. `period`: what they were asked for. `now`: when they were
-    /// opened.
-    FrameInbox(std::size_t cameras, hal::Instant period, hal::Instant now)
-        : cameras_(cameras), period_(period) {
+    /// `cameras`: at most kMaxCameras. `now`: when they were opened.
+    FrameInbox(std::size_t cameras, hal::Instant now) : cameras_(cameras) {
         for (Place& place : places_) place.heard_at = now;
     }
 
@@ -73,7 +71,6 @@ class FrameInbox {
     };
 
     const std::size_t cameras_;
-    const hal::Instant period_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::array<Place, kMaxCameras> places_;

@@ -17,8 +17,7 @@ namespace hitchview::app {
 /// - What the status signal says, if there is one.
 /// - The signal's own codes.
 /// - Codes of unsigned signals of at least 8 bits, after SAE J1939-71, unless `j1939` is false.
-/// Whole
-///   bytes: top byte 0xff is kNotAvailable, 0xfe is kError. Other lengths: all ones is
+///   Whole bytes: top byte 0xff is kNotAvailable, 0xfe is kError. Other lengths: all ones is
 ///   kNotAvailable, one less is kError. Signed signals (all ones is -1 there) and shorter ones have
 ///   no such codes.
 /// - kImplausible: outside [min_deg, max_deg].

@@ -13,7 +13,7 @@ LiveFrameSynchronizer::LiveFrameSynchronizer(std::vector<LiveCamera> cameras, Ev
       clock_(clock),
       period_(period),
       rule_(period, tolerance),
-      inbox_(cameras_.size(), period, clock.Now()) {
+      inbox_(cameras_.size(), clock.Now()) {
     HV_EXPECT(cameras_.size() <= kMaxCameras);
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
         threads_.push_back(std::make_unique<CaptureThread>(*cameras_[i].camera, cameras_[i].name, i,
@@ -28,6 +28,12 @@ LiveFrameSynchronizer::~LiveFrameSynchronizer() {
 
 void LiveFrameSynchronizer::Finish() {
     threads_.clear();
+}
+
+void LiveFrameSynchronizer::StartCounting() {
+    counts_ = {};
+    spread_ = {};
+    sequence_ = 0;
 }
 
 hal::Result<FrameSet> LiveFrameSynchronizer::DoWaitSet() {

@@ -21,6 +21,7 @@ struct LiveCamera {
     std::size_t index_in_unit = 0;
 };
 
+/// Since StartCounting.
 struct SetCounts {
     std::uint64_t complete = 0;  ///< of all cameras of the rig
     std::uint64_t partial = 0;   ///< of some
@@ -28,7 +29,7 @@ struct SetCounts {
     std::uint64_t skipped = 0;   ///< periods that have no set
 };
 
-/// What became of the frames of one live camera.
+/// What became of the frames of one live camera since it was opened.
 struct LiveCameraSummary {
     std::string name;
     hal::CameraCounts device;
@@ -55,6 +56,9 @@ class LiveFrameSynchronizer final : public FrameSynchronizer {
                           hal::Instant period, hal::Instant tolerance);
     ~LiveFrameSynchronizer() override;
 
+    /// The program is ready: sets are counted and numbered anew, whatever it had no time for while
+    /// it got ready. What became of the cameras' frames is counted on.
+    void StartCounting();
     [[nodiscard]] const SetCounts& counts() const { return counts_; }
     /// Ends the capture. No set may be asked for afterwards.
     void Finish();

@@ -40,7 +40,9 @@ PanoramaLoop::PanoramaLoop(const Parts& parts, const RunOptions& options, RunSum
 hal::Checked<hal::Done> PanoramaLoop::Run(const std::atomic<bool>& stop, const ShownHook& hook) {
     const hal::Instant ready = deadlines_.start();
     // Live cameras stamp their frames by the clock, recordings from their start.
-    parts_.outputs.Start(parts_.board.live() != nullptr ? hal::Instant{} : ready);
+    LiveFrameSynchronizer* const live = parts_.board.live();
+    if (live != nullptr) live->StartCounting();
+    parts_.outputs.Start(live != nullptr ? hal::Instant{} : ready);
     MemoryWatch memory(options_.trap_alloc);
     auto done = ShowSets(stop, hook);
     if (done) done = ShowHeldBack(hook);

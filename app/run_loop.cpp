@@ -6,6 +6,7 @@
 #include "algo/offline_unified_vertex_motion.hpp"
 #include "algo/unified_vertex_motion.hpp"
 #include "app/board.hpp"
+#include "app/first_sets.hpp"
 #include "app/panorama_loop.hpp"
 #include "app/real_time.hpp"
 #include "app/run_outputs.hpp"
@@ -14,8 +15,8 @@
 namespace hitchview::app {
 namespace {
 
-/// Frame sets that may be looked at to find the trailer before the first one is shown.
-constexpr int kPrimeSets = 10;
+/// How long live cameras may take to start.
+constexpr std::chrono::seconds kLongestStart{3};
 
 algo::UnifiedVertexMotionOptions MotionOptions(const RigConfig& config, const RunOptions& options) {
     algo::UnifiedVertexMotionOptions motion;
@@ -74,13 +75,12 @@ Motion MakeMotion(const RigGeometry& rig, const algo::UnifiedVertexMotionOptions
 }
 
 /// Looks at the first frame sets; the cameras are used up by that.
-hal::Checked<hal::Done> Prime(Board& board, Pipeline& pipeline) {
-    for (int i = 0; i < kPrimeSets; ++i) {
-        const auto set = board.sets().WaitSet();
-        if (!set && set.error() == hal::Error::kEndOfStream && i > 0) break;
-        if (!set) return CameraFailure(set.error());
-        if (pipeline.Prime(set.value())) break;
-    }
+hal::Checked<hal::Done> Prime(Board& board, Pipeline& pipeline, const std::atomic<bool>& stop) {
+    const int patience =
+        board.live() == nullptr ? 0 : static_cast<int>(kLongestStart / board.period());
+    const auto look = [&](const FrameSet& set) { return pipeline.Prime(set); };
+    const auto shown = ShowFirstSets(board.sets(), patience, look, stop);
+    if (!shown) return CameraFailure(shown.error());
     pipeline.Start();
     return hal::Done{};
 }
@@ -170,7 +170,7 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
         LogSteps({{"workers scheduled", workers.refusal()}});
     const Motion motion = MakeMotion(rig.value(), motion_options, options);
     Pipeline pipeline(rig.value(), *motion.any, workers);
-    if (const auto primed = Prime(**board, pipeline); !primed) return primed.error();
+    if (const auto primed = Prime(**board, pipeline, stop); !primed) return primed.error();
     // A recording starts again from its first frame.
     if ((*board)->live() == nullptr) board = Board::Open(config, held);
     if (board && motion.offline != nullptr) {

@@ -4,10 +4,12 @@ namespace hitchview::drivers {
 
 hal::Result<hal::FrameHeader> FrameAccounting::Accept(std::uint32_t device_sequence,
                                                       hal::Instant stamp, bool damaged) {
-    const Seen seen{device_sequence, stamp};
+    Seen seen{device_sequence, stamp};
     const bool steps_back = maybe_last_ && stamp < maybe_last_->stamp;
+    // A frame that a driver has given up may have no stamp at all.
+    if (damaged && steps_back) seen.stamp = maybe_last_->stamp + period_;
     if (maybe_last_) sequence_ += NoteGaps(*maybe_last_, seen);
-    maybe_last_ = seen;
+    if (maybe_last_ || !damaged) maybe_last_ = seen;
     const hal::FrameHeader header{sequence_++, stamp};
     if (!damaged && !steps_back) return header;
     NoteCorrupted();

@@ -22,7 +22,8 @@ class FrameAccounting {
     void NoteReopened() { ++reopened_; }
 
     /// A frame left the device. kCorrupted, and so counted: it is marked as `damaged`, or its stamp
-    /// is earlier than that of the frame before; frames after it are measured against it.
+    /// is earlier than that of the frame before; frames after it are measured against it, or, if it
+    /// is damaged, against the moment at which it was due.
     /// Sequence numbers may wrap. A step of the stamps of more than 1.5 periods between neighbours
     /// in sequence is frames that nobody numbered; in the sequence given out they are a gap only
     /// where the device does not number its frames at all.

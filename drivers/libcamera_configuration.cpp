@@ -73,6 +73,11 @@ hal::Range RangeOf(const StreamConfiguration& stream, const LibcameraPixelFormat
     return full ? hal::Range::kFull : hal::Range::kLimited;
 }
 
+LibcameraLayout LayoutOf(const StreamConfiguration& stream, const LibcameraPixelFormat& format) {
+    return {&format, static_cast<int>(stream.size.width), static_cast<int>(stream.size.height),
+            static_cast<int>(stream.stride)};
+}
+
 /// Empty if it fits; otherwise what is granted.
 std::optional<std::string> Misfit(const LibcameraOptions& options,
                                   const LibcameraPixelFormat& format,
@@ -86,6 +91,8 @@ std::optional<std::string> Misfit(const LibcameraOptions& options,
     if (stream.size.width % 2 != 0 || stream.size.height % 2 != 0)
         return granted + ", which is not even";
     if (TurnOf(configuration) != Wanted(options)) return granted + ", not turned or mirrored";
+    if (!HoldsLines(LayoutOf(stream, format)))
+        return granted + " in lines of " + std::to_string(stream.stride) + " bytes";
     return std::nullopt;
 }
 
@@ -112,11 +119,8 @@ hal::Checked<LibcameraGranted> AgreeWithLibcamera(libcamera::Camera& camera,
         if (granted.configuration->validate() == CameraConfiguration::Invalid) continue;
         const auto misfit = Misfit(options, format, *granted.configuration);
         if (!misfit) {
-            const StreamConfiguration& stream = granted.stream();
-            granted.layout = {&format, static_cast<int>(stream.size.width),
-                              static_cast<int>(stream.size.height),
-                              static_cast<int>(stream.stride)};
-            granted.range = RangeOf(stream, format);
+            granted.layout = LayoutOf(granted.stream(), format);
+            granted.range = RangeOf(granted.stream(), format);
             return granted;
         }
         if (offered.find(*misfit) == std::string::npos)

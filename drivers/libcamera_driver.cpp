@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "drivers/frame_clock.hpp"
 #include "drivers/libcamera_controls.hpp"
 
 namespace hitchview::drivers {
@@ -19,10 +20,6 @@ using hal::Error;
 using hal::FrameLease;
 using hal::Result;
 using std::chrono::milliseconds;
-
-hal::Instant Now() {
-    return std::chrono::steady_clock::now().time_since_epoch();
-}
 
 void Log(const LibcameraOptions& options, const char* what, const char* why) {
     std::fprintf(stderr, "camera %s (%s): %s%s\n", options.name.c_str(), options.id.c_str(), what,

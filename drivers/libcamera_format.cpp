@@ -54,6 +54,11 @@ std::span<const LibcameraPixelFormat> LibcameraPixelFormats() {
     return kFormats;
 }
 
+bool HoldsLines(const LibcameraLayout& layout) {
+    return layout.stride_bytes >=
+           std::int64_t{layout.width_px} * layout.pixel_format->line_bytes_per_pixel;
+}
+
 std::size_t LeastBytes(const LibcameraLayout& layout) {
     const auto stride = static_cast<std::size_t>(layout.stride_bytes);
     std::size_t bytes = 0;

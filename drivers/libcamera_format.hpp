@@ -41,13 +41,16 @@ struct LibcameraLayout {
     friend bool operator==(const LibcameraLayout&, const LibcameraLayout&) = default;
 };
 
+/// No line of a picture runs into the next one.
+bool HoldsLines(const LibcameraLayout& layout);
+
 /// Bytes that a whole frame has at least: the last line of a plane may lack its padding.
 std::size_t LeastBytes(const LibcameraLayout& layout);
 
 using LibcameraPlanes = std::array<std::span<const std::uint8_t>, 3>;
 
-/// Planes of one frame. `memory`: one span for all, or one for each plane. Empty if one is shorter
-/// than its picture.
+/// Planes of one frame, of a layout that HoldsLines. `memory`: one span for all, or one for each
+/// plane. Empty if one is shorter than its picture.
 std::optional<std::array<hal::Plane, 3>> PlanesOf(const LibcameraLayout& layout,
                                                   const LibcameraPlanes& memory);
 

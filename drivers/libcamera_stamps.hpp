@@ -16,7 +16,8 @@ struct BootClocks {
 /// pipelines hand on the kernel's stamp, which is of CLOCK_MONOTONIC. Both are the same until the
 /// machine sleeps; after that a stamp ahead of CLOCK_MONOTONIC can only be of CLOCK_BOOTTIME, and
 /// so is each one after it. A machine that has slept for less than a frame's way through it is not
-/// told apart: the stamps are off by so much.
+/// told apart: the stamps are off by so much. A stamp ahead of both clocks is of neither: the moment
+/// at which its frame was read stands for it.
 class LibcameraStampClock {
  public:
     /// `now`: read after the frame had come.

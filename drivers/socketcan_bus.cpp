@@ -11,6 +11,7 @@
 #include <cstring>
 #include <ctime>
 
+#include "drivers/frame_clock.hpp"
 #include "hal/expect.hpp"
 
 namespace hitchview::drivers {
@@ -22,16 +23,6 @@ using hal::Instant;
 
 constexpr Instant kFirstRetry = std::chrono::milliseconds(100);
 constexpr Instant kLongestRetry = std::chrono::milliseconds(500);
-
-Instant Now(clockid_t clock) {
-    timespec time{};
-    clock_gettime(clock, &time);
-    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
-}
-
-Instant Now() {
-    return Now(CLOCK_MONOTONIC);
-}
 
 template <typename Value>
 bool Set(int socket, int level, int option, const Value& value) {
@@ -101,7 +92,7 @@ hal::Checked<hal::Done> CheckIds(const SocketCanOptions& options) {
 }  // namespace
 
 SocketCanBus::SocketCanBus(const SocketCanOptions& options)
-    : options_(options), time_(Now(CLOCK_REALTIME), Now()), retry_after_(kFirstRetry) {
+    : options_(options), time_(ReadClock(CLOCK_REALTIME), Now()), retry_after_(kFirstRetry) {
     options_.interface.copy(name_.data(), name_.size() - 1);
 }
 

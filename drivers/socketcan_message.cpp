@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
+
+#include "drivers/frame_clock.hpp"
 
 namespace hitchview::drivers {
 namespace {
@@ -14,16 +15,6 @@ using hal::CanFrameKind;
 using hal::Instant;
 
 constexpr std::uint8_t kFdFlags = 0xf;
-
-Instant InstantOf(const timespec& time) {
-    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
-}
-
-Instant Now(clockid_t clock) {
-    timespec time{};
-    clock_gettime(clock, &time);
-    return InstantOf(time);
-}
 
 CanFrameKind KindOf(canid_t id) {
     if ((id & CAN_ERR_FLAG) != 0) return CanFrameKind::kError;
@@ -71,7 +62,7 @@ hal::CanFrame SocketCanMessage::frame() const {
 }
 
 SocketCanStamps SocketCanMessage::stamps() const {
-    SocketCanStamps stamps{.wall_now = Now(CLOCK_REALTIME), .now = Now(CLOCK_MONOTONIC)};
+    SocketCanStamps stamps{.wall_now = ReadClock(CLOCK_REALTIME), .now = Now()};
     scm_timestamping given{};
     const cmsghdr* const found = Find(SCM_TIMESTAMPING, sizeof given);
     if (found == nullptr) return stamps;

@@ -3,21 +3,12 @@
 #include <cerrno>
 #include <ctime>
 
-#include "hal/expect.hpp"
+#include "drivers/frame_clock.hpp"
 
 namespace hitchview::drivers {
-namespace {
-
-hal::Instant Read(clockid_t clock) {
-    timespec time{};
-    HV_EXPECT(clock_gettime(clock, &time) == 0);
-    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
-}
-
-}  // namespace
 
 hal::Instant SteadyClock::DoNow() const {
-    return Read(CLOCK_MONOTONIC);
+    return ReadClock(CLOCK_MONOTONIC);
 }
 
 void SteadyClock::DoSleepUntil(hal::Instant when) {
@@ -30,7 +21,7 @@ void SteadyClock::DoSleepUntil(hal::Instant when) {
 
 std::int64_t SteadyClock::DoEpochMicroseconds(hal::Instant when) const {
     // The offset is read each time: the wall clock may be set while we run.
-    const hal::Instant offset = Read(CLOCK_REALTIME) - Read(CLOCK_MONOTONIC);
+    const hal::Instant offset = ReadClock(CLOCK_REALTIME) - ReadClock(CLOCK_MONOTONIC);
     return std::chrono::duration_cast<std::chrono::microseconds>(when + offset).count();
 }
 

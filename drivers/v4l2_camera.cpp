@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "drivers/frame_clock.hpp"
 #include "drivers/v4l2_bandwidth.hpp"
 
 namespace hitchview::drivers {
@@ -18,10 +19,6 @@ using hal::Error;
 using hal::FrameLease;
 using hal::Result;
 using std::chrono::milliseconds;
-
-hal::Instant Now() {
-    return std::chrono::steady_clock::now().time_since_epoch();
-}
 
 /// Without the heap: the words are glibc's own.
 const char* Words(const V4l2Failure& failure) {
@@ -168,6 +165,8 @@ V4l2Camera::Woken V4l2Camera::Wait(milliseconds timeout) {
 void V4l2Camera::Drain() {
     while (Wait(milliseconds(0)).frame && buffers_.Dequeue(device_)) {
     }
+    // It has been filling buffers, or had none left: how long nobody asked says nothing about it.
+    heard_at_ = Now();
 }
 
 V4l2Camera::MaybeAnswer V4l2Camera::TakeFrame() {
@@ -180,7 +179,10 @@ V4l2Camera::MaybeAnswer V4l2Camera::TakeFrame() {
 }
 
 V4l2Camera::MaybeAnswer V4l2Camera::Lend(const V4l2Buffers::Filled& filled) {
-    const V4l2StampSource source = StampSourceOf(filled.flags);
+    // A driver may tell the end of a frame that is still to come; a stamp further ahead is not of
+    // this clock, whatever the driver says.
+    const V4l2StampSource source = filled.stamp > heard_at_ + period_ ? V4l2StampSource::kDequeue
+                                                                      : StampSourceOf(filled.flags);
     const hal::Instant stamp = source == V4l2StampSource::kDequeue ? heard_at_ : filled.stamp;
     const auto maybe_planes = PlanesOf(facts_.granted.layout, filled.payload);
     const bool damaged =

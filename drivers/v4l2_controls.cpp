@@ -10,6 +10,7 @@ namespace hitchview::drivers {
 namespace {
 
 constexpr std::uint32_t kNextControl = V4L2_CTRL_FLAG_NEXT_CTRL;
+constexpr std::size_t kMostControls = 1024;
 
 /// v4l2-ctl's way to write names: small letters and digits, one _ for everything in between.
 std::string PlainName(const std::string& name) {
@@ -41,9 +42,12 @@ bool IsMenu(const V4l2Control& control) {
 }
 
 void ListMenu(const V4l2Device& device, V4l2Control& control) {
+    constexpr std::int64_t kMostEntries = 1024;
     v4l2_querymenu entry{};
     entry.id = control.id;
-    for (std::int64_t i = control.minimum; i <= control.maximum; ++i) {
+    const std::int64_t first = std::max<std::int64_t>(control.minimum, 0);
+    const std::int64_t last = std::min(control.maximum, first + kMostEntries - 1);
+    for (std::int64_t i = first; i <= last; ++i) {
         entry.index = static_cast<std::uint32_t>(i);
         if (!device.Call(VIDIOC_QUERYMENU, "VIDIOC_QUERYMENU", entry)) continue;
         const auto* text = reinterpret_cast<const char*>(entry.name);
@@ -150,7 +154,10 @@ std::vector<V4l2Control> ListControls(const V4l2Device& device, V4l2Menus menus)
     std::vector<V4l2Control> controls;
     v4l2_query_ext_ctrl query{};
     query.id = kNextControl;
+    std::uint32_t before = 0;
     while (device.Call(VIDIOC_QUERY_EXT_CTRL, "VIDIOC_QUERY_EXT_CTRL", query)) {
+        if (query.id <= before || controls.size() == kMostControls) break;
+        before = query.id;
         const bool heading = query.type == V4L2_CTRL_TYPE_CTRL_CLASS;
         const bool disabled = (query.flags & V4L2_CTRL_FLAG_DISABLED) != 0;
         if (!heading && !disabled) controls.push_back(ControlOf(query));
@@ -193,6 +200,17 @@ hal::Checked<std::vector<V4l2ControlValue>> PlanOrientation(
         }
     }
     return values;
+}
+
+hal::Checked<std::vector<V4l2ControlValue>> PlanSettings(
+    const std::vector<V4l2Control>& controls, const V4l2Orientation& orientation,
+    const std::vector<V4l2ControlWish>& wishes) {
+    auto settings = PlanOrientation(controls, orientation);
+    if (!settings) return settings;
+    const auto values = PlanControls(controls, wishes);
+    if (!values) return values.error();
+    settings->insert(settings->end(), values.value().begin(), values.value().end());
+    return settings;
 }
 
 V4l2Result<hal::Done> SetControl(const V4l2Device& device, const V4l2ControlValue& value) {

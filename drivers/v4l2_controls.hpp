@@ -27,7 +27,8 @@ struct V4l2Control {
 
 enum class V4l2Menus : std::uint8_t { kListed, kLeftOut };
 
-/// Every control that is not disabled. Set-up only. Menus may have holes, and the kernel is asked
+/// Every control that is not disabled, of drivers whose lists do not end at most 1024 controls and
+/// menu entries. Set-up only. Menus may have holes, and the kernel is asked
 /// for each entry: leave them out where they are not needed.
 std::vector<V4l2Control> ListControls(const V4l2Device& device, V4l2Menus menus);
 
@@ -62,6 +63,11 @@ struct V4l2Orientation {
 /// Pure.
 hal::Checked<std::vector<V4l2ControlValue>> PlanOrientation(
     const std::vector<V4l2Control>& controls, const V4l2Orientation& orientation);
+
+/// The orientation, then the wishes. Pure.
+hal::Checked<std::vector<V4l2ControlValue>> PlanSettings(
+    const std::vector<V4l2Control>& controls, const V4l2Orientation& orientation,
+    const std::vector<V4l2ControlWish>& wishes);
 
 /// No memory from the heap.
 V4l2Result<hal::Done> SetControl(const V4l2Device& device, const V4l2ControlValue& value);

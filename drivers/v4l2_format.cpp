@@ -81,6 +81,16 @@ hal::Range RangeOf(std::uint32_t fourcc, std::uint32_t quantization, std::uint32
     return full ? hal::Range::kFull : hal::Range::kLimited;
 }
 
+bool HoldsLines(const V4l2Layout& layout) {
+    const V4l2PixelFormat* format = FindV4l2PixelFormat(layout.fourcc);
+    if (format == nullptr) return false;
+    const auto used =
+        std::span(layout.planes).first(static_cast<std::size_t>(format->memory_planes));
+    return std::ranges::all_of(used, [&](const V4l2Layout::MemoryPlane& plane) {
+        return plane.line_bytes >= std::int64_t{layout.width_px} * format->line_bytes_per_pixel;
+    });
+}
+
 std::optional<std::array<hal::Plane, 3>> PlanesOf(const V4l2Layout& layout,
                                                   const V4l2Payload& payload) {
     const V4l2PixelFormat* format = FindV4l2PixelFormat(layout.fourcc);

@@ -59,11 +59,14 @@ struct V4l2Layout {
     friend bool operator==(const V4l2Layout&, const V4l2Layout&) = default;
 };
 
+/// No line of a picture that is not compressed runs into the next one.
+bool HoldsLines(const V4l2Layout& layout);
+
 /// Where a frame's bytes are: per memory plane, without what precedes the picture in it.
 using V4l2Payload = std::array<std::span<const std::uint8_t>, 3>;
 
-/// Planes for the renderer. Empty if a memory plane is shorter than its picture: a damaged frame.
-/// Not for compressed formats.
+/// Planes for the renderer, of a layout that HoldsLines. Empty if a memory plane is shorter than
+/// its picture: a damaged frame. Not for compressed formats.
 std::optional<std::array<hal::Plane, 3>> PlanesOf(const V4l2Layout& layout,
                                                   const V4l2Payload& payload);
 

@@ -8,13 +8,15 @@ namespace {
 using hal::Checked;
 using hal::Done;
 
-std::string SizeText(int width_px, int height_px) {
-    return std::to_string(width_px) + "x" + std::to_string(height_px);
+/// What else is wrong with it.
+std::string FaultText(const V4l2Layout& layout) {
+    if (layout.interlaced) return " interlaced";
+    if (HoldsLines(layout)) return "";
+    return " in lines of " + std::to_string(layout.planes[0].line_bytes) + " bytes";
 }
 
-std::string FormatText(std::uint32_t fourcc, int width_px, int height_px, double rate_hz) {
-    return FourccText(fourcc) + " " + SizeText(width_px, height_px) + " at " + RateText(rate_hz) +
-           " Hz";
+std::string FormatText(std::uint32_t fourcc, V4l2Size size, double rate_hz) {
+    return FourccText(fourcc) + " " + SizeText(size) + " at " + RateText(rate_hz) + " Hz";
 }
 
 }  // namespace
@@ -23,7 +25,7 @@ Checked<V4l2Granted> V4l2Negotiation::Agree() {
     const V4l2Size& size = options_.wish.size;
     if (size.width_px <= 0 || size.height_px <= 0 || size.width_px % 2 != 0 ||
         size.height_px % 2 != 0) {
-        return "size is " + SizeText(size.width_px, size.height_px) + ", must be even";
+        return "size is " + SizeText(size) + ", must be even";
     }
     if (const auto connected = Connect(); !connected) return ToString(connected.error());
     identity_ = device_.identity();
@@ -41,12 +43,9 @@ Checked<Done> V4l2Negotiation::Choose() {
     pixel_format_ = chosen.value();
     const auto menus = options_.controls.empty() ? V4l2Menus::kLeftOut : V4l2Menus::kListed;
     const std::vector<V4l2Control> controls = ListControls(device_, menus);
-    auto mirrors = PlanOrientation(controls, options_.orientation);
-    if (!mirrors) return mirrors.error();
-    const auto values = PlanControls(controls, options_.controls);
-    if (!values) return values.error();
-    control_values_ = std::move(mirrors.value());
-    control_values_.insert(control_values_.end(), values.value().begin(), values.value().end());
+    auto settings = PlanSettings(controls, options_.orientation, options_.controls);
+    if (!settings) return settings.error();
+    control_values_ = std::move(settings.value());
     has_exposure_ = HasExposure(controls);
     return Done{};
 }
@@ -57,15 +56,11 @@ Checked<Done> V4l2Negotiation::Check(const V4l2Granted& granted) const {
     const bool same = layout.fourcc == pixel_format_->fourcc &&
                       layout.width_px == wish.size.width_px &&
                       layout.height_px == wish.size.height_px && !layout.interlaced &&
-                      layout.memory_planes == pixel_format_->memory_planes;
+                      layout.memory_planes == pixel_format_->memory_planes && HoldsLines(layout);
     if (same && SameRate(granted.rate_hz, wish.rate_hz)) return Done{};
-    return "wanted " +
-           FormatText(pixel_format_->fourcc, wish.size.width_px, wish.size.height_px,
-                      wish.rate_hz) +
-           ", got " +
-           FormatText(layout.fourcc, layout.width_px, layout.height_px, granted.rate_hz) +
-           (layout.interlaced ? " interlaced" : "") +
-           "; offered: " + OffersText(ListOffers(device_, wish.size));
+    return "wanted " + FormatText(pixel_format_->fourcc, wish.size, wish.rate_hz) + ", got " +
+           FormatText(layout.fourcc, {layout.width_px, layout.height_px}, granted.rate_hz) +
+           FaultText(layout) + "; offered: " + OffersText(ListOffers(device_, wish.size));
 }
 
 V4l2Result<Done> V4l2Negotiation::Connect() {
@@ -117,7 +112,8 @@ bool V4l2Negotiation::IsSameDevice() const {
 bool V4l2Negotiation::IsSameFormat(const V4l2Granted& granted) const {
     V4l2Layout there = granted.layout;
     there.planes = first_.layout.planes;  // frames carry the length of their lines
-    return there == first_.layout && SameRate(granted.rate_hz, first_.rate_hz);
+    return there == first_.layout && HoldsLines(granted.layout) &&
+           SameRate(granted.rate_hz, first_.rate_hz);
 }
 
 }  // namespace hitchview::drivers

@@ -7,6 +7,9 @@
 namespace hitchview::drivers {
 namespace {
 
+constexpr std::uint32_t kMostFormats = 256;
+constexpr std::uint32_t kMostListed = 64;  // of each other kind
+
 double Hertz(const v4l2_fract& interval) {
     return interval.numerator == 0 ? 0
                                    : static_cast<double>(interval.denominator) / interval.numerator;
@@ -18,19 +21,21 @@ std::vector<V4l2Rates> ListRates(const V4l2Device& device, std::uint32_t fourcc,
     interval.pixel_format = fourcc;
     interval.width = static_cast<std::uint32_t>(size.width_px);
     interval.height = static_cast<std::uint32_t>(size.height_px);
-    while (device.Call(VIDIOC_ENUM_FRAMEINTERVALS, "VIDIOC_ENUM_FRAMEINTERVALS", interval)) {
+    for (; interval.index < kMostListed; ++interval.index) {
+        if (!device.Call(VIDIOC_ENUM_FRAMEINTERVALS, "VIDIOC_ENUM_FRAMEINTERVALS", interval)) break;
         if (interval.type != V4L2_FRMIVAL_TYPE_DISCRETE) {
             rates.push_back({Hertz(interval.stepwise.max), Hertz(interval.stepwise.min)});
             break;
         }
         rates.push_back({Hertz(interval.discrete), Hertz(interval.discrete)});
-        ++interval.index;
     }
     return rates;
 }
 
 V4l2Sizes SizesOf(const v4l2_frmsizeenum& size) {
-    const auto px = [](std::uint32_t value) { return static_cast<int>(value); };
+    // Larger than any picture, and safe to calculate with.
+    static constexpr std::uint32_t kMost_px = 1U << 20;
+    const auto px = [](std::uint32_t value) { return static_cast<int>(std::min(value, kMost_px)); };
     if (size.type == V4L2_FRMSIZE_TYPE_DISCRETE) {
         const int width = px(size.discrete.width);
         const int height = px(size.discrete.height);
@@ -57,13 +62,13 @@ std::vector<V4l2Sizes> ListSizes(const V4l2Device& device, std::uint32_t fourcc,
     std::vector<V4l2Sizes> list;
     v4l2_frmsizeenum size{};
     size.pixel_format = fourcc;
-    while (device.Call(VIDIOC_ENUM_FRAMESIZES, "VIDIOC_ENUM_FRAMESIZES", size)) {
+    for (; size.index < kMostListed; ++size.index) {
+        if (!device.Call(VIDIOC_ENUM_FRAMESIZES, "VIDIOC_ENUM_FRAMESIZES", size)) break;
         V4l2Sizes sizes = SizesOf(size);
         const V4l2Size largest{sizes.max_width_px, sizes.max_height_px};
         sizes.rates = ListRates(device, fourcc, Contains(sizes, wanted) ? wanted : largest);
         list.push_back(std::move(sizes));
         if (size.type != V4L2_FRMSIZE_TYPE_DISCRETE) break;
-        ++size.index;
     }
     return list;
 }
@@ -81,14 +86,10 @@ bool Has(const V4l2FormatOffer& offer, const V4l2Wish& wish) {
            });
 }
 
-std::string SizeText(int width_px, int height_px) {
-    return std::to_string(width_px) + "x" + std::to_string(height_px);
-}
-
 std::string SizesText(const V4l2Sizes& sizes) {
-    std::string text = SizeText(sizes.min_width_px, sizes.min_height_px);
+    std::string text = SizeText({sizes.min_width_px, sizes.min_height_px});
     if (sizes.max_width_px != sizes.min_width_px || sizes.max_height_px != sizes.min_height_px) {
-        text += ".." + SizeText(sizes.max_width_px, sizes.max_height_px);
+        text += ".." + SizeText({sizes.max_width_px, sizes.max_height_px});
     }
     const char* separator = " at ";
     for (const V4l2Rates& rates : sizes.rates) {
@@ -100,8 +101,7 @@ std::string SizesText(const V4l2Sizes& sizes) {
 }
 
 std::string WishText(const V4l2Wish& wish) {
-    return SizeText(wish.size.width_px, wish.size.height_px) + " at " + RateText(wish.rate_hz) +
-           " Hz as " + wish.format;
+    return SizeText(wish.size) + " at " + RateText(wish.rate_hz) + " Hz as " + wish.format;
 }
 
 std::string FormatNames() {
@@ -117,6 +117,10 @@ bool SameRate(double a_hz, double b_hz) {
     return std::abs(a_hz - b_hz) <= 0.01 * std::max(a_hz, b_hz);
 }
 
+std::string SizeText(V4l2Size size) {
+    return std::to_string(size.width_px) + "x" + std::to_string(size.height_px);
+}
+
 std::string RateText(double rate_hz) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.4g", rate_hz);
@@ -127,7 +131,8 @@ std::vector<V4l2FormatOffer> ListOffers(const V4l2Device& device, V4l2Size wante
     std::vector<V4l2FormatOffer> offers;
     v4l2_fmtdesc format{};
     format.type = device.buffer_type();
-    while (device.Call(VIDIOC_ENUM_FMT, "VIDIOC_ENUM_FMT", format)) {
+    for (; format.index < kMostFormats; ++format.index) {
+        if (!device.Call(VIDIOC_ENUM_FMT, "VIDIOC_ENUM_FMT", format)) break;
         const auto* text = reinterpret_cast<const char*>(format.description);
         V4l2FormatOffer offer{format.pixelformat, FieldText({text, sizeof format.description}), {}};
         // Of a format that we do not take, neither sizes nor rates matter.
@@ -135,9 +140,19 @@ std::vector<V4l2FormatOffer> ListOffers(const V4l2Device& device, V4l2Size wante
             offer.sizes = ListSizes(device, offer.fourcc, wanted);
         }
         offers.push_back(std::move(offer));
-        ++format.index;
     }
     return offers;
+}
+
+std::vector<std::string> ListInputs(const V4l2Device& device) {
+    std::vector<std::string> inputs;
+    v4l2_input input{};
+    for (; input.index < kMostListed; ++input.index) {
+        if (!device.Call(VIDIOC_ENUMINPUT, "VIDIOC_ENUMINPUT", input)) break;
+        const auto* text = reinterpret_cast<const char*>(input.name);
+        inputs.push_back(FieldText({text, sizeof input.name}));
+    }
+    return inputs;
 }
 
 std::string OffersText(const std::vector<V4l2FormatOffer>& offers) {

@@ -38,9 +38,13 @@ struct V4l2Size {
     int height_px = 0;
 };
 
-/// Everything the device lists, by enumeration, in its own order. Of sizes that are a range, the
+/// Everything the device lists, by enumeration, in its own order; of drivers whose lists never end
+/// at most 256 formats, 64 sizes of each and 64 rates of these. Of sizes that are a range, the
 /// rates are those at `wanted`, or at the largest where `wanted` is not in it. Set-up only.
 std::vector<V4l2FormatOffer> ListOffers(const V4l2Device& device, V4l2Size wanted);
+
+/// Names of the inputs, by number, at most 64; empty: the device has no such choice. Set-up only.
+std::vector<std::string> ListInputs(const V4l2Device& device);
 
 /// "UYVY 640x480 at 30, 15 Hz; YUYV 16x16..1920x1080"; what this driver does not take, left out.
 std::string OffersText(const std::vector<V4l2FormatOffer>& offers);
@@ -60,6 +64,9 @@ hal::Checked<const V4l2PixelFormat*> ChooseFormat(const std::vector<V4l2FormatOf
 
 /// Within 1 %: 29.97 is 30.
 bool SameRate(double a_hz, double b_hz);
+
+/// "1280x720".
+std::string SizeText(V4l2Size size);
 
 /// 30 -> "30", 29.97 -> "29.97".
 std::string RateText(double rate_hz);

@@ -87,7 +87,17 @@ void Describe(const V4l2Device& device, V4l2Size wanted, V4l2DeviceReport& repor
     report.multi_planar = device.multi_planar();
     report.offers = ListOffers(device, wanted);
     report.controls = ListControls(device, V4l2Menus::kListed);
+    report.inputs = ListInputs(device);
     AskForStamps(device, report);
+}
+
+hal::Checked<hal::Done> CheckInput(const std::vector<std::string>& inputs, int wanted) {
+    if (wanted < static_cast<int>(inputs.size())) return hal::Done{};
+    std::string there;
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+        there += (i == 0 ? "" : ", ") + std::to_string(i) + " (" + inputs[i] + ")";
+    return "input " + std::to_string(wanted) + " is not there; the device has " +
+           (there.empty() ? "none" : there);
 }
 
 }  // namespace
@@ -116,6 +126,14 @@ std::vector<V4l2DeviceReport> ProbeV4l2Devices(const std::vector<std::string>& l
         reports.push_back(std::move(report));
     }
     return reports;
+}
+
+hal::Checked<hal::Done> CheckSettings(const V4l2DeviceReport& report,
+                                      const V4l2CameraOptions& options) {
+    if (const auto input = CheckInput(report.inputs, options.input); !input) return input.error();
+    const auto settings = PlanSettings(report.controls, options.orientation, options.controls);
+    if (!settings) return settings.error();
+    return hal::Done{};
 }
 
 }  // namespace hitchview::drivers

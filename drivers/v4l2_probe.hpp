@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "drivers/v4l2_stamps.hpp"
 #include "drivers/v4l2_controls.hpp"
 #include "drivers/v4l2_kernel.hpp"
+#include "drivers/v4l2_negotiation.hpp"
 #include "drivers/v4l2_offers.hpp"
+#include "drivers/v4l2_stamps.hpp"
 
 namespace hitchview::drivers {
 
@@ -21,7 +22,8 @@ struct V4l2DeviceReport {
     bool multi_planar = false;
     std::vector<V4l2FormatOffer> offers;
     std::vector<V4l2Control> controls;
-    bool busy = false;  ///< somebody streams from it
+    std::vector<std::string> inputs;  ///< names, by number; empty: there is no such choice
+    bool busy = false;                ///< somebody streams from it
     /// Known only of a device that nobody streams from.
     bool stamps_known = false;
     V4l2StampSource stamps = V4l2StampSource::kEndOfFrame;
@@ -38,5 +40,10 @@ std::vector<std::string> V4l2LinkFolders();
 std::vector<V4l2DeviceReport> ProbeV4l2Devices(
     const std::vector<std::string>& link_folders = V4l2LinkFolders(),
     V4l2Kernel& kernel = SystemKernel(), V4l2Size wanted = {1280, 720});
+
+/// Whether input, orientation and controls can be set as `options` ask. The error names what cannot
+/// be had, and what there is. Pure.
+hal::Checked<hal::Done> CheckSettings(const V4l2DeviceReport& report,
+                                      const V4l2CameraOptions& options);
 
 }  // namespace hitchview::drivers

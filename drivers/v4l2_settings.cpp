@@ -97,9 +97,9 @@ V4l2Layout LayoutOf(const v4l2_pix_format_mplane& pix) {
 void FillLineBytes(V4l2Layout& layout) {
     const V4l2PixelFormat* const format = FindV4l2PixelFormat(layout.fourcc);
     if (format == nullptr || format->line_bytes_per_pixel == 0) return;
+    const std::int64_t tight = std::int64_t{layout.width_px} * format->line_bytes_per_pixel;
     for (V4l2Layout::MemoryPlane& plane : layout.planes) {
-        if (plane.line_bytes == 0)
-            plane.line_bytes = layout.width_px * format->line_bytes_per_pixel;
+        if (plane.line_bytes == 0) plane.line_bytes = static_cast<int>(tight);
     }
 }
 

@@ -34,7 +34,9 @@ class CamerasVerbTest : public testing::Test {
     }
     json Json() const { return json::parse(tests::FileText(folder_ / "cameras.json")); }
     std::string WriteJson() const { return "--json " + (folder_ / "cameras.json"); }
-    std::string Rig(const std::string& rear, const std::string& size_px = "[640, 360]") {
+    /// `more`: of the rear camera.
+    std::string Rig(const std::string& rear, const std::string& size_px = "[640, 360]",
+                    const std::string& more = "") {
         return "--rig " +
                folder_.Write("rig.yaml",
                              "schema: 1\n"
@@ -42,7 +44,8 @@ class CamerasVerbTest : public testing::Test {
                              "units:\n"
                              "  tractor: {cameras: [{name: front, source: {v4l2: /dev/video0}}]}\n"
                              "  trailer: {cameras: [{name: rear, source: {v4l2: " +
-                                 rear + ", size_px: " + size_px + ", format: yuyv}}]}\n");
+                                 rear + ", size_px: " + size_px + ", format: yuyv" + more +
+                                 "}}]}\n");
     }
 
     tests::TemporaryFolder folder_;
@@ -98,6 +101,23 @@ TEST_F(CamerasVerbTest, ACameraThatCannotGiveWhatTheRigAsksIsOfNoUse) {
                          "  why     wanted 800x600 at 30 Hz as yuyv, which it does not offer\n"),
               text_.npos)
         << text_;
+}
+
+TEST_F(CamerasVerbTest, WhatTheRigAsksToBeSetIsCheckedAndNotSet) {
+    const auto problem = [&](const std::string& more) {
+        EXPECT_EQ(Cameras(Rig("/dev/video1", "[640, 360]", more) + " " + WriteJson()), 1) << more;
+        return Json().at("rig")[1].at("problem").get<std::string>();
+    };
+    EXPECT_EQ(problem(", input: 9").find("input 9 is not there; the device has 0 ("), 0U);
+    EXPECT_EQ(problem(", controls: {brightness: 999}"),
+              "control brightness is 999, must be 0 to 255");
+    EXPECT_EQ(problem(", controls: {no_such_thing: 1}")
+                  .find("control no_such_thing is not there; the device has "),
+              0U);
+    const std::string settable = ", rotation_deg: 180, controls: {brightness: 7}";
+    EXPECT_EQ(Cameras(Rig("/dev/video1", "[640, 360]", settable)), 0) << text_;
+    EXPECT_FALSE(
+        tests::Shell("v4l2-ctl -d /dev/video1 -C brightness,vertical_flip | grep -qE ' (7|1)$'"));
 }
 
 TEST_F(CamerasVerbTest, MeasuresHowFastTheBuffersRead) {

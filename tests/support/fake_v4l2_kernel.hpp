@@ -31,13 +31,17 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
     std::uint32_t fourcc = V4L2_PIX_FMT_GREY;
     std::uint32_t width = 64;
     std::uint32_t height = 48;
-    std::uint32_t granted_width = 64;  ///< by S_FMT, whatever was asked
+    std::uint32_t granted_width = 64;      ///< by S_FMT, whatever was asked
+    std::uint32_t granted_line_bytes = 0;  ///< 0: the driver leaves it open
     std::string bus = "usb-1";
     std::string card = "Fake";
     bool there = true;
     bool exports = true;
     bool has_rate = true;
+    bool poll_lies = false;  ///< a frame is told to be ready, and there is none
+    bool lists_end = true;   ///< false: enumerations tell the same at every index, controls too
     std::map<std::uint32_t, int> controls;
+    std::uint32_t control_type = V4L2_CTRL_TYPE_INTEGER;
     std::deque<Frame> script;  ///< handed out as buffers are queued
     int poll_errors = 0;       ///< so often poll tells of an error
     int failure = 0;           ///< errno of the stream from now on
@@ -78,7 +82,7 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
         if (failure != 0 || poll_errors > 0) {
             --poll_errors;
             device.revents = POLLERR;
-        } else if (!script.empty() && !queued_.empty()) {
+        } else if (poll_lies || (!script.empty() && !queued_.empty())) {
             device.revents = POLLIN;
         } else if (drivers::SystemKernel().Poll(files.subspan(1), timeout) == 0) {
             return 0;
@@ -107,15 +111,15 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
                 return Identify(As<v4l2_capability>(argument));
             case VIDIOC_ENUM_FMT:
                 As<v4l2_fmtdesc>(argument).pixelformat = fourcc;
-                return As<v4l2_fmtdesc>(argument).index == 0 ? 0 : EINVAL;
+                return !lists_end || As<v4l2_fmtdesc>(argument).index == 0 ? 0 : EINVAL;
             case VIDIOC_ENUM_FRAMESIZES:
                 As<v4l2_frmsizeenum>(argument).type = V4L2_FRMSIZE_TYPE_DISCRETE;
                 As<v4l2_frmsizeenum>(argument).discrete = {width, height};
-                return As<v4l2_frmsizeenum>(argument).index == 0 ? 0 : EINVAL;
+                return !lists_end || As<v4l2_frmsizeenum>(argument).index == 0 ? 0 : EINVAL;
             case VIDIOC_ENUM_FRAMEINTERVALS:
                 As<v4l2_frmivalenum>(argument).type = V4L2_FRMIVAL_TYPE_DISCRETE;
                 As<v4l2_frmivalenum>(argument).discrete = {1, 100};
-                return As<v4l2_frmivalenum>(argument).index == 0 ? 0 : EINVAL;
+                return !lists_end || As<v4l2_frmivalenum>(argument).index == 0 ? 0 : EINVAL;
             case VIDIOC_QUERY_EXT_CTRL:
                 return DescribeControl(As<v4l2_query_ext_ctrl>(argument));
             case VIDIOC_G_CTRL:
@@ -183,16 +187,19 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
     }
 
     int DescribeControl(v4l2_query_ext_ctrl& query) const {
-        const auto next = controls.upper_bound(query.id & V4L2_CTRL_ID_MASK);
+        const auto next =
+            lists_end ? controls.upper_bound(query.id & V4L2_CTRL_ID_MASK) : controls.begin();
         if (next == controls.end()) return EINVAL;
         query.id = next->first;
-        query.type = V4L2_CTRL_TYPE_INTEGER;
+        query.type = control_type;
+        query.maximum = INT64_MAX;
         return 0;
     }
 
     int Grant(v4l2_pix_format& pix) const {
         pix.width = granted_width;
         pix.height = height;
+        pix.bytesperline = granted_line_bytes;
         pix.pixelformat = fourcc;
         pix.field = V4L2_FIELD_NONE;
         pix.sizeimage = kBufferBytes;

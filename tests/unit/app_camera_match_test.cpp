@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "app/camera_match.hpp"
+#include "app/camera_table.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace hitchview::app {
@@ -93,6 +94,27 @@ TEST_F(CameraMatchTest, ADeviceThatCannotGiveWhatIsAskedIsOfNoUse) {
     EXPECT_EQ(Match(devices_[0].path, devices_[1].path)[1].problem, "wanted 1920x1080");
 }
 
+TEST_F(CameraMatchTest, ADeviceThatCannotBeSetAsTheRigAsksIsOfNoUse) {
+    devices_[1].unsettable = "control zoom is not there";
+    const auto matches = Match(devices_[0].path, devices_[1].path);
+    EXPECT_EQ(matches[1].problem, "control zoom is not there");
+    EXPECT_FALSE(AllThere(matches));
+    devices_[1].no_pick = "wanted 1920x1080";
+    EXPECT_EQ(Match(devices_[0].path, devices_[1].path)[1].problem,
+              "wanted 1920x1080; control zoom is not there");
+}
+
+TEST_F(CameraMatchTest, ACameraOfLibcameraIsNotLookedFor) {
+    RigConfig rig = Rig(devices_[0].path, "/base/soc/i2c0mux/imx219");
+    rig.units[algo::Unit::kTrailer].cameras[0].source = CameraConfig::Source::kLibcamera;
+    EXPECT_EQ(WishesOf(rig).size(), 1U);
+    const auto matches = MatchCameras(rig, devices_);
+    EXPECT_TRUE(matches[0].looked_for);
+    EXPECT_FALSE(matches[1].looked_for);
+    EXPECT_TRUE(AllThere(matches));
+    EXPECT_THAT(MatchTable(matches), HasSubstr("rear    not checked"));
+}
+
 TEST_F(CameraMatchTest, ADeviceInUseIsThere) {
     devices_[1].state = CameraDevice::State::kBusy;
     EXPECT_TRUE(AllThere(Match(devices_[0].path, devices_[1].path)));
@@ -105,9 +127,9 @@ TEST_F(CameraMatchTest, ADeviceIsAskedForWhatTheRigFileSays) {
     rig.units[algo::Unit::kTrailer].cameras[0].live.format = "yuyv";
     const auto wishes = WishesOf(rig);
     ASSERT_EQ(wishes.size(), 2U);
-    EXPECT_EQ(wishes[1].device, "/dev/video1");
-    EXPECT_EQ(SizeText(wishes[1].size_px), "640x480");
-    EXPECT_EQ(wishes[1].format, "yuyv");
+    EXPECT_EQ(wishes[1].live.device, "/dev/video1");
+    EXPECT_EQ(SizeText(wishes[1].live.size_px), "640x480");
+    EXPECT_EQ(wishes[1].live.format, "yuyv");
     EXPECT_DOUBLE_EQ(wishes[1].rate_hz, 25);
 }
 

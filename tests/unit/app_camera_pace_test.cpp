@@ -1,52 +1,50 @@
 #include <gtest/gtest.h>
 
 #include "app/camera_pace.hpp"
+#include "app/frame_inbox.hpp"
 
 namespace hitchview::app {
 namespace {
 
-using hal::FrameHeader;
-using hal::Instant;
-using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-constexpr Instant kPeriod = milliseconds(10);
-
-TEST(CameraPaceTest, IsNotKnownBeforeTheSecondFrame) {
-    CameraPace pace;
-    EXPECT_FALSE(pace.period_ms());
-    pace.Add({7, milliseconds(100)}, kPeriod);
-    EXPECT_FALSE(pace.period_ms());
-}
-
-TEST(CameraPaceTest, FramesThatAreMissingCount) {
-    CameraPace pace;
-    for (const std::uint32_t i : {0U, 1U, 4U, 5U, 100U})
-        pace.Add({i, i * Instant(microseconds(10'010))}, kPeriod);
-    EXPECT_NEAR(*pace.period_ms(), 10.01, 1e-9);
-}
-
-TEST(CameraPaceTest, StampsThatTrembleDoNotMatter) {
-    CameraPace pace;
-    for (std::uint32_t i = 0; i <= 100; ++i)
-        pace.Add({i, i * kPeriod + (i % 2 == 1 ? milliseconds(9) : milliseconds(0))}, kPeriod);
-    EXPECT_NEAR(*pace.period_ms(), 10, 1e-9);
-}
-
-TEST(CameraPaceTest, TheTimeThatACameraWasAwayIsLeftOut) {
-    for (const milliseconds away : {milliseconds(25), milliseconds(5000)}) {
-        CameraPace pace;
-        for (std::uint32_t i = 0; i < 10; ++i) pace.Add({i, i * kPeriod}, kPeriod);
-        for (std::uint32_t i = 10; i < 20; ++i) pace.Add({i, away + i * kPeriod}, kPeriod);
-        EXPECT_NEAR(*pace.period_ms(), 10, 1e-9);
+/// Frames at 40 ms, numbered from `sequence` on.
+void AddFrames(CameraPace& pace, int frames, std::uint32_t sequence, milliseconds first_at) {
+    for (int i = 0; i < frames; ++i) {
+        pace.Add({sequence + static_cast<std::uint32_t>(i), first_at + i * milliseconds(40)});
     }
 }
 
-TEST(CameraPaceTest, NumbersMayWrap) {
+TEST(CameraPaceTest, OneFrameHasNoPeriod) {
     CameraPace pace;
-    pace.Add({0xFFFFFFFF, milliseconds(10)}, kPeriod);
-    pace.Add({1, milliseconds(30)}, kPeriod);
-    EXPECT_NEAR(*pace.period_ms(), 10, 1e-9);
+    AddFrames(pace, 1, 0, milliseconds(7));
+    EXPECT_FALSE(pace.period_ms());
+}
+
+TEST(CameraPaceTest, LostFramesThatAreNumberedDoNotMatter) {
+    CameraPace pace;
+    AddFrames(pace, 10, 4'294'967'290, milliseconds(7));
+    AddFrames(pace, 10, 10, milliseconds(7 + 16 * 40));
+    EXPECT_DOUBLE_EQ(pace.period_ms().value(), 40);
+}
+
+TEST(CameraPaceTest, TimeInWhichACameraWasAwayIsNoPartOfItsPeriod) {
+    hal::FramePool pool({16, 16}, 4);
+    FrameInbox inbox(1, milliseconds(0));
+    const auto put = [&](std::uint32_t sequence, milliseconds at) {
+        inbox.Put(0, pool.Lease(pool.Take().value(), {sequence, at}), at);
+    };
+    for (std::uint32_t i = 0; i < 10; ++i) put(i, i * milliseconds(40));
+    inbox.SetConnected(0, false);
+    for (std::uint32_t i = 10; i < 20; ++i) put(i, milliseconds(60'000) + i * milliseconds(40));
+    EXPECT_DOUBLE_EQ(inbox.pace(0).period_ms().value(), 40);
+}
+
+TEST(CameraPaceTest, AStampThatStepsBackIsMeasuredAfresh) {
+    CameraPace pace;
+    AddFrames(pace, 10, 0, milliseconds(60'000));
+    AddFrames(pace, 10, 10, milliseconds(7));
+    EXPECT_DOUBLE_EQ(pace.period_ms().value(), 40);
 }
 
 }  // namespace

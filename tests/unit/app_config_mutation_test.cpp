@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <string>
 
 #include "app/config.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -12,7 +13,8 @@ using Random = std::mt19937;
 
 /// A few bytes replaced, lost, inserted or repeated.
 std::string Mutated(std::string text, Random& random) {
-    static const std::string kBytes("{}[]:,&*!#|>'\"%@`-? \n\t01x.~<\0\xff", 33);
+    using namespace std::string_literals;
+    static const std::string kBytes = "{}[]:,&*!#|>'\"%@`-? \n\t01x.~<\0\xff"s;
     const auto below = [&](std::size_t limit) { return random() % limit; };
     for (auto count = 1 + below(4); count > 0; --count) {
         const std::size_t at = below(text.size());

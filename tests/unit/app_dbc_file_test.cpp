@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "app/dbc_file.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -54,6 +57,13 @@ const std::string kSmall =
     "SG_MUL_VAL_ 2566879783 Low Page 0-0, 5-5;\n"
     "SG_MUL_VAL_ 2566879783 High Page 3-3;\n";
 
+/// Null if there is none of the name.
+template <typename T>
+const T* Named(const std::vector<T>& all, const std::string& name) {
+    const auto found = std::ranges::find(all, name, &T::name);
+    return found == all.end() ? nullptr : &*found;
+}
+
 DbcFile Parse(const std::string& text) {
     auto dbc = ParseDbc(text, "x.dbc");
     EXPECT_TRUE(dbc) << dbc.error();
@@ -68,21 +78,21 @@ std::string Refusal(const std::string& text) {
 TEST(DbcFileTest, MessagesHaveTheirIdFormatSizeAndCycle) {
     const DbcFile dbc = Parse(kSmall);
     ASSERT_EQ(dbc.messages.size(), 2U);
-    const DbcMessage& standard = *dbc.FindMessage("Yaw");
+    const DbcMessage& standard = *Named(dbc.messages, "Yaw");
     EXPECT_EQ(standard.id, 1111U);
     EXPECT_FALSE(standard.extended);
     EXPECT_EQ(standard.size_bytes, 8);
     EXPECT_EQ(standard.cycle_time, std::chrono::milliseconds(20));
-    const DbcMessage& extended = *dbc.FindMessage("Extended");
+    const DbcMessage& extended = *Named(dbc.messages, "Extended");
     EXPECT_EQ(extended.id, 0x18ff7a27U);
     EXPECT_TRUE(extended.extended);
     EXPECT_EQ(extended.cycle_time, std::chrono::milliseconds(200)) << "the default";
-    EXPECT_EQ(dbc.FindMessage("VECTOR__INDEPENDENT_SIG_MSG"), nullptr);
+    EXPECT_EQ(Named(dbc.messages, "VECTOR__INDEPENDENT_SIG_MSG"), nullptr);
 }
 
 TEST(DbcFileTest, SignalsHaveTheirLayoutScaleRangeAndUnit) {
     const DbcFile dbc = Parse(kSmall);
-    const DbcSignal& angle = *dbc.messages[0].FindSignal("Angle");
+    const DbcSignal& angle = *Named(dbc.messages[0].signals, "Angle");
     EXPECT_EQ(angle.line, 15);
     EXPECT_EQ(angle.start_bit, 23);
     EXPECT_EQ(angle.length_bits, 12);
@@ -93,8 +103,8 @@ TEST(DbcFileTest, SignalsHaveTheirLayoutScaleRangeAndUnit) {
     EXPECT_EQ(angle.min, -90);
     EXPECT_EQ(angle.max, 319.3);
     EXPECT_EQ(angle.unit, "degrees");
-    EXPECT_TRUE(dbc.messages[0].FindSignal("State")->is_signed);
-    const DbcSignal& high = *dbc.messages[1].FindSignal("High");
+    EXPECT_TRUE(Named(dbc.messages[0].signals, "State")->is_signed);
+    const DbcSignal& high = *Named(dbc.messages[1].signals, "High");
     EXPECT_EQ(high.factor, -0.5);
     EXPECT_EQ(high.offset, 1500);
     EXPECT_EQ(high.max, 1.8e19);
@@ -104,25 +114,25 @@ TEST(DbcFileTest, SignalsHaveTheirLayoutScaleRangeAndUnit) {
 TEST(DbcFileTest, MultiplexingIsTold) {
     const DbcFile dbc = Parse(kSmall);
     const DbcMessage& message = dbc.messages[1];
-    EXPECT_EQ(message.FindMultiplexor(), message.FindSignal("Page"));
-    EXPECT_FALSE(message.FindSignal("Page")->multiplexed_by);
-    EXPECT_EQ(message.FindSignal("Low")->multiplexed_by, 0);
-    EXPECT_TRUE(message.FindSignal("Low")->extended_multiplexing);
-    EXPECT_EQ(message.FindSignal("High")->multiplexed_by, 3);
-    EXPECT_FALSE(message.FindSignal("High")->extended_multiplexing) << "the same once more";
-    EXPECT_TRUE(message.FindSignal("High")->is_multiplexor);
-    EXPECT_TRUE(message.FindSignal("High")->is_float);
-    EXPECT_FALSE(message.FindSignal("Low")->is_float);
+    EXPECT_EQ(message.FindMultiplexor(), Named(message.signals, "Page"));
+    EXPECT_FALSE(Named(message.signals, "Page")->multiplexed_by);
+    EXPECT_EQ(Named(message.signals, "Low")->multiplexed_by, 0);
+    EXPECT_TRUE(Named(message.signals, "Low")->extended_multiplexing);
+    EXPECT_EQ(Named(message.signals, "High")->multiplexed_by, 3);
+    EXPECT_FALSE(Named(message.signals, "High")->extended_multiplexing) << "the same once more";
+    EXPECT_TRUE(Named(message.signals, "High")->is_multiplexor);
+    EXPECT_TRUE(Named(message.signals, "High")->is_float);
+    EXPECT_FALSE(Named(message.signals, "Low")->is_float);
 }
 
 TEST(DbcFileTest, TextsBelongToTheirValues) {
     const DbcFile dbc = Parse(kSmall);
-    const auto& texts = dbc.messages[0].FindSignal("Angle")->texts;
+    const auto& texts = Named(dbc.messages[0].signals, "Angle")->texts;
     ASSERT_EQ(texts.size(), 2U);
     EXPECT_EQ(texts[0].raw, 4095);
     EXPECT_EQ(texts[0].text, "Faulty");
     EXPECT_EQ(texts[1].text, "NoDataExists");
-    EXPECT_EQ(dbc.messages[0].FindSignal("State")->texts[1].raw, -1) << "64 bits, all ones";
+    EXPECT_EQ(Named(dbc.messages[0].signals, "State")->texts[1].raw, -1) << "64 bits, all ones";
 }
 
 TEST(DbcFileTest, AMistakeIsNamedWithFileAndLine) {
@@ -202,14 +212,14 @@ TEST(DbcFileTest, AFileOfAVehicleOnTheRoadIsReadAsATextSearchFindsIt) {
     for (const DbcMessage& message : dbc.value().messages) signals += message.signals.size();
     EXPECT_EQ(dbc.value().messages.size(), 331U);
     EXPECT_EQ(signals, 2150U);
-    const DbcMessage* const message = dbc.value().FindMessage("TrailerAid_Stat2_FD1");
+    const DbcMessage* const message = Named(dbc.value().messages, "TrailerAid_Stat2_FD1");
     ASSERT_NE(message, nullptr);
     EXPECT_EQ(message->id, 1111U);
-    const DbcSignal* const angle = message->FindSignal("TrlrHitchYaw_An_Actl");
+    const DbcSignal* const angle = Named(message->signals, "TrlrHitchYaw_An_Actl");
     ASSERT_NE(angle, nullptr);
     EXPECT_EQ(angle->line, 1174);
     EXPECT_EQ(angle->texts.size(), 2U);
-    EXPECT_EQ(message->FindSignal("TrlrHitchYaw_D_Stat")->texts.size(), 16U);
+    EXPECT_EQ(Named(message->signals, "TrlrHitchYaw_D_Stat")->texts.size(), 16U);
 }
 
 }  // namespace

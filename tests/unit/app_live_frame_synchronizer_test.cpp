@@ -177,5 +177,15 @@ TEST_F(LiveFrameSynchronizerTest, EveryFrameIsAccountedFor) {
     }
 }
 
+TEST_F(LiveFrameSynchronizerTest, SetsAreCountedAndNumberedFromWhenTheProgramIsReady) {
+    (void)sets_->WaitSet();
+    clock_.SleepUntil(clock_.Now() + 10 * kPeriod);
+    sets_->StartCounting();
+    EXPECT_EQ(sets_->WaitSet().value().sequence, 0U);
+    const SetCounts& counts = sets_->counts();
+    EXPECT_EQ(counts.complete + counts.partial, 1U);
+    EXPECT_EQ(counts.skipped, 0U);
+}
+
 }  // namespace
 }  // namespace hitchview::app

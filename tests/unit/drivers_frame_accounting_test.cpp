@@ -67,6 +67,15 @@ TEST_F(FrameAccountingTest, ADamagedFrameIsCountedAndLeavesNoLoss) {
     EXPECT_EQ(accounting_.counts().lost + accounting_.counts().lost_unnumbered, 0U);
 }
 
+TEST_F(FrameAccountingTest, ADamagedFrameNeedsNoStamp) {
+    EXPECT_EQ(Accept(0, 0, true), -1);
+    Accept(1, 1'000'000);
+    EXPECT_EQ(Accept(2, 0, true), -1);
+    EXPECT_EQ(Accept(3, 1'000'080), 3);
+    EXPECT_EQ(accounting_.counts().corrupted, 2U);
+    EXPECT_EQ(accounting_.counts().lost + accounting_.counts().lost_unnumbered, 0U);
+}
+
 TEST_F(FrameAccountingTest, AStampThatStepsBackIsRefusedOnce) {
     Accept(0, 1000);
     EXPECT_EQ(Accept(1, 500), -1);

@@ -57,6 +57,12 @@ TEST(LibcameraFormatTest, AMemoryThatEndsBeforeItsPictureIsNoFrame) {
     EXPECT_FALSE(PlanesOf({&Format("nv12"), 6, 4, 8}, {std::span(memory).first(32)}));
 }
 
+TEST(LibcameraFormatTest, LinesMustNotRunIntoEachOther) {
+    EXPECT_TRUE(HoldsLines({&Format("yuyv"), 6, 4, 12}));
+    EXPECT_FALSE(HoldsLines({&Format("yuyv"), 6, 4, 11}));
+    EXPECT_FALSE(HoldsLines({&Format("rgb888"), 6, 4, -1}));
+}
+
 TEST(LibcameraFormatTest, CopyingLeavesOutThePaddingOfLines) {
     const LibcameraLayout layout{&Format("nv12"), 4, 2, 6};
     std::vector<std::uint8_t> memory(18);
@@ -121,6 +127,13 @@ TEST(LibcameraStampTest, AStampOfTheClockThatSleepsNotIsBroughtBack) {
 TEST(LibcameraStampTest, AMonotonicStampStaysThoughTheMachineHasSlept) {
     LibcameraStampClock clock;
     EXPECT_EQ(clock.ToMonotonic(seconds(9), {seconds(10), seconds(110)}), seconds(9));
+}
+
+TEST(LibcameraStampTest, AStampAheadOfBothClocksIsOfNeither) {
+    LibcameraStampClock clock;
+    const BootClocks now{seconds(10), seconds(110)};
+    EXPECT_EQ(clock.ToMonotonic(seconds(111), now), seconds(10));
+    EXPECT_EQ(clock.ToMonotonic(seconds(9), now), seconds(9)) << "nor does it tell of the next one";
 }
 
 TEST(LibcameraStampTest, WhatWasOnceSeenToBeBoottimeStaysIt) {

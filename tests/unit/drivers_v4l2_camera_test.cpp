@@ -48,7 +48,7 @@ class V4l2CameraTest : public testing::Test {
         return *camera_;
     }
 
-    Error Answer() { return camera_->WaitFrame(milliseconds(200)).error(); }
+    Error Answer() { return camera_->WaitFrame(std::chrono::seconds(10)).error(); }
 
     tests::FakeV4l2Kernel kernel_;
     V4l2CameraOptions options_;
@@ -155,6 +155,22 @@ TEST(V4l2TimingsTest, SignalsThatDifferInTheirBlankingAloneAreFollowed) {
     EXPECT_EQ(kernel.timings.bt.hfrontporch, kBlankingAt30Hz);
 }
 
+TEST_F(V4l2CameraTest, ADeviceThatPromisesFramesAndGivesNoneIsSilentToo) {
+    Open();
+    kernel_.poll_lies = true;
+    EXPECT_EQ(Answer(), Error::kDisconnected);
+    EXPECT_EQ(kernel_.stream_starts, 2);
+}
+
+TEST_F(V4l2CameraTest, TimeInWhichNobodyAsksIsNoSilence) {
+    options_.silence_periods = 20;  // 200 ms
+    auto camera = V4l2Camera::Open(options_, kernel_);
+    ASSERT_TRUE(camera.ok()) << camera.error();
+    std::this_thread::sleep_for(milliseconds(250));
+    EXPECT_EQ((*camera)->WaitFrame(milliseconds(1)).error(), Error::kTimeout);
+    EXPECT_EQ(kernel_.stream_starts, 1);
+}
+
 TEST_F(V4l2CameraTest, AFrameHeldThroughAReopenKeepsItsMemory) {
     V4l2Camera& camera = Open();
     Script(0, 1);
@@ -224,6 +240,16 @@ TEST_F(V4l2CameraTest, WithoutAMonotonicStampTheTimeOfDequeueingCounts) {
     EXPECT_GE(frame.value().view().header.captured_at, before - milliseconds(10));
 }
 
+TEST_F(V4l2CameraTest, AStampAheadOfTheClockIsReplacedByTheMomentOfDequeueing) {
+    V4l2Camera& camera = Open();
+    const auto now = [] { return std::chrono::steady_clock::now().time_since_epoch(); };
+    const auto ahead = std::chrono::duration_cast<microseconds>(now()) + std::chrono::hours(1);
+    kernel_.script.push_back({0, ahead, Bytes(64 * 48), flags_});
+    const auto frame = camera.WaitFrame(milliseconds(100));
+    ASSERT_TRUE(frame.ok());
+    EXPECT_LE(frame.value().view().header.captured_at, now());
+}
+
 TEST_F(V4l2CameraTest, ShortAndMarkedFramesAreCorrupted) {
     V4l2Camera& camera = Open();
     Script(0, 1, Bytes(64 * 48 - 1));
@@ -240,6 +266,29 @@ TEST_F(V4l2CameraTest, WhatTheDriverChangedIsToldInWords) {
     EXPECT_EQ(V4l2Camera::Open(options_, kernel_).error(),
               "/dev/video7: wanted GREY 64x48 at 100 Hz, got GREY 32x48 at 100 Hz; offered: GREY "
               "64x48 at 100 Hz");
+}
+
+TEST_F(V4l2CameraTest, LinesThatRunIntoEachOtherAreRefused) {
+    kernel_.granted_line_bytes = 63;
+    const auto refused = V4l2Camera::Open(options_, kernel_);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().find("got GREY 64x48 at 100 Hz in lines of 63 bytes"),
+              std::string::npos)
+        << refused.error();
+    kernel_.granted_line_bytes = 64;
+    V4l2Camera& camera = Open();
+    EXPECT_EQ(Answer(), Error::kDisconnected);
+    kernel_.granted_line_bytes = 0xffffffff;  // -1
+    EXPECT_EQ(camera.Reopen().error(), Error::kUnsupported);
+}
+
+TEST_F(V4l2CameraTest, ListsThatNeverEndAreCutOff) {
+    kernel_.lists_end = false;
+    kernel_.controls[V4L2_CID_BRIGHTNESS] = 1;
+    kernel_.control_type = V4L2_CTRL_TYPE_MENU;
+    options_.controls = {{"nothing", "1"}};
+    EXPECT_NE(V4l2Camera::Open(options_, kernel_).error().find("control nothing is not there"),
+              std::string::npos);
 }
 
 TEST_F(V4l2CameraTest, ADeviceWithoutARateSettingIsTakenAtItsWord) {

@@ -6,6 +6,7 @@
 #include "drivers/v4l2_controls.hpp"
 #include "drivers/v4l2_format.hpp"
 #include "drivers/v4l2_offers.hpp"
+#include "drivers/v4l2_probe.hpp"
 
 namespace hitchview::drivers {
 namespace {
@@ -202,6 +203,27 @@ TEST_F(V4l2ControlsTest, ADeviceWithoutMirrorsSendsTheUserToTheCalibration) {
     const auto turned = PlanOrientation(controls_, {180, false, false});
     ASSERT_FALSE(turned.ok());
     EXPECT_NE(turned.error().find("calibrate the camera as it is mounted"), std::string::npos);
+}
+
+TEST_F(V4l2ControlsTest, WhatCannotBeSetIsToldBeforeItIsTried) {
+    V4l2DeviceReport report;
+    report.controls = controls_;
+    report.inputs = {"Camera", "HDMI"};
+    V4l2CameraOptions options;
+    options.controls = {{"backlight_compensation", "true"}};
+    options.input = 1;
+    EXPECT_TRUE(CheckSettings(report, options).ok());
+    options.input = 2;
+    EXPECT_EQ(CheckSettings(report, options).error(),
+              "input 2 is not there; the device has 0 (Camera), 1 (HDMI)");
+    options.input = -1;
+    options.controls[0].value = "2";
+    EXPECT_EQ(CheckSettings(report, options).error(),
+              "control backlight_compensation is 2, must be 0 to 1");
+    options.controls.clear();
+    options.orientation.vertical_flip = true;
+    EXPECT_NE(CheckSettings(report, options).error().find("cannot mirror the picture vertically"),
+              std::string::npos);
 }
 
 }  // namespace
