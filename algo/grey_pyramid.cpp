@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "algo/multiversion.hpp"
+
 namespace hitchview::algo {
 namespace {
 
@@ -12,17 +14,34 @@ int Mirror(int i, int n) {
     return i < n ? i : 2 * n - 2 - i;
 }
 
-/// One row of vertical sums [1 4 6 4 1], with two mirrored entries on each side.
+using FiveRows = std::array<const std::uint8_t*, 5>;
+
+/// [1 4 6 4 1].
+HV_MULTIVERSION
+void SumFive(const FiveRows& rows, int count, std::uint16_t* __restrict sums) {
+    const auto [a, b, c, d, e] = rows;
+    for (int x = 0; x < count; ++x)
+        sums[x] = static_cast<std::uint16_t>(a[x] + e[x] + 4 * (b[x] + d[x]) + 6 * c[x]);
+}
+
+/// The same beside each other, of every second column, and divided by the sum of all weights.
+HV_MULTIVERSION
+void HalveRow(const std::uint16_t* __restrict sums, int count, std::uint8_t* __restrict out) {
+    for (int x = 0; x < count; ++x) {
+        const std::uint16_t* s = sums + 2 * x;
+        const int sum = s[-2] + s[2] + 4 * (s[-1] + s[1]) + 6 * s[0];
+        out[x] = static_cast<std::uint8_t>((sum + 128) >> 8);
+    }
+}
+
+/// One row of vertical sums, with two mirrored entries on each side.
 void SumColumns(const cv::Mat1b& fine, int row, std::uint16_t* sums) {
-    std::array<const std::uint8_t*, 5> r{};
+    FiveRows rows{};
     for (int k = 0; k < 5; ++k)
-        r[static_cast<std::size_t>(k)] = fine[Mirror(row + k - 2, fine.rows)];
+        rows[static_cast<std::size_t>(k)] = fine[Mirror(row + k - 2, fine.rows)];
     std::uint16_t* out = sums + kMargin;
     const int n = fine.cols;
-    for (int x = 0; x < n; ++x) {
-        out[x] =
-            static_cast<std::uint16_t>(r[0][x] + r[4][x] + 4 * (r[1][x] + r[3][x]) + 6 * r[2][x]);
-    }
+    SumFive(rows, n, out);
     out[-1] = out[1];
     out[-2] = out[2];
     out[n] = out[n - 2];
@@ -32,13 +51,7 @@ void SumColumns(const cv::Mat1b& fine, int row, std::uint16_t* sums) {
 void Halve(const cv::Mat1b& fine, cv::Mat1b& coarse, std::uint16_t* sums) {
     for (int y = 0; y < coarse.rows; ++y) {
         SumColumns(fine, 2 * y, sums);
-        const std::uint16_t* s = sums + kMargin;
-        std::uint8_t* out = coarse[y];
-        for (int x = 0; x < coarse.cols; ++x) {
-            const int i = 2 * x;
-            const int sum = s[i - 2] + s[i + 2] + 4 * (s[i - 1] + s[i + 1]) + 6 * s[i];
-            out[x] = static_cast<std::uint8_t>((sum + 128) >> 8);
-        }
+        HalveRow(sums + kMargin, coarse.cols, coarse[y]);
     }
 }
 

@@ -27,23 +27,11 @@ struct Fraction {
     std::uint16_t y;
 };
 
-/// Pixels of `rows` rows of a patch, one after the other: loops over them need no end of a row.
-template <int kRows>
-struct Pixels {
-    alignas(32) std::array<std::uint8_t, kRows * kWidth> grey;
-
-    Pixels(const std::uint8_t* top_left, std::ptrdiff_t step) {
-        for (int y = 0; y < kRows; ++y) {
-            std::memcpy(grey.data() + y * kWidth, top_left + y * step, kWidth);
-        }
-    }
-};
-
-/// Blends `rows` rows along themselves, `right` being one pixel beside `pixels`, then with the row
-/// below.
+/// Blends `rows` rows along themselves, each pixel with the one right of it, then with the row
+/// below; `row`: the first of them.
 HV_MULTIVERSION
-void SampleRows(const std::uint8_t* __restrict pixels, const std::uint8_t* __restrict right,
-                Fraction f, int rows, std::int16_t* __restrict out) {
+void SampleRows(const std::uint8_t* row, std::ptrdiff_t step, Fraction f, int rows,
+                std::int16_t* __restrict out) {
     constexpr int kRowScale = kUnit / kRowGreyUnit;
     constexpr int kRowHalf = kRowScale / 2;
     constexpr int kScale = kUnit * kRowGreyUnit / kGreyUnit;
@@ -51,9 +39,16 @@ void SampleRows(const std::uint8_t* __restrict pixels, const std::uint8_t* __res
     alignas(32) std::uint16_t blended[kMaxRows * kWidth];
     const auto gx = static_cast<std::uint16_t>(kUnit - f.x);
     const auto gy = static_cast<std::uint16_t>(kUnit - f.y);
-    for (int i = 0; i < (rows + 1) * kWidth; ++i) {
-        const auto sum = static_cast<std::uint16_t>(pixels[i] * gx + right[i] * f.x + kRowHalf);
-        blended[i] = static_cast<std::uint16_t>(sum / kRowScale);
+    for (int y = 0; y <= rows; ++y, row += step) {
+        std::array<std::uint8_t, kWidth> left;  // copied: then the loop becomes one of vectors
+        std::array<std::uint8_t, kWidth> right;
+        std::memcpy(left.data(), row, kWidth);
+        std::memcpy(right.data(), row + 1, kWidth);
+        std::uint16_t* to = blended + y * kWidth;
+        for (std::size_t x = 0; x < kWidth; ++x) {
+            const auto sum = static_cast<std::uint16_t>(left[x] * gx + right[x] * f.x + kRowHalf);
+            to[x] = static_cast<std::uint16_t>(sum / kRowScale);
+        }
     }
     for (int i = 0; i < rows * kWidth; ++i) {
         const auto sum =
@@ -129,27 +124,18 @@ struct Place {
 
 void SamplePatch(const cv::Mat1b& image, int centre_x, int centre_y, IntegerPatch& p) {
     const Place place(image, centre_x, centre_y);
-    SampleRows(Pixels<kHeight + 1>(place.top_left, place.step).grey.data(),
-               Pixels<kHeight + 1>(place.top_left + 1, place.step).grey.data(), place.fraction,
-               kHeight, p.value.data());
+    SampleRows(place.top_left, place.step, place.fraction, kHeight, p.value.data());
 }
 
 void SampleTemplate(const cv::Mat1b& image, int centre_x, int centre_y, TemplatePatch& t) {
     const Place place(image, centre_x, centre_y);
-    const std::uint8_t* above = place.top_left - place.step;
-    const Pixels<kMaxRows> left(above - 1, place.step);
-    const Pixels<kMaxRows> here(above, place.step);
-    const Pixels<kMaxRows> right(above + 1, place.step);
-    const Pixels<kMaxRows> beyond(above + 2, place.step);
     constexpr int kRows = kMaxRows - 1;
     alignas(32) std::array<std::int16_t, kRows * kWidth> less;
     alignas(32) std::array<std::int16_t, kRows * kWidth> more;
-    SampleRows(left.grey.data() + kWidth, here.grey.data() + kWidth, place.fraction, kHeight,
-               less.data());
-    SampleRows(right.grey.data() + kWidth, beyond.grey.data() + kWidth, place.fraction, kHeight,
-               more.data());
+    SampleRows(place.top_left - 1, place.step, place.fraction, kHeight, less.data());
+    SampleRows(place.top_left + 1, place.step, place.fraction, kHeight, more.data());
     DifferRows(less.data(), more.data(), t.slope_x.value.data());
-    SampleRows(here.grey.data(), right.grey.data(), place.fraction, kRows, more.data());
+    SampleRows(place.top_left - place.step, place.step, place.fraction, kRows, more.data());
     DifferRows(more.data(), more.data() + 2 * kWidth, t.slope_y.value.data());
     std::copy_n(more.begin() + kWidth, kArea, t.grey.value.begin());
 }

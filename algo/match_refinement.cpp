@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <opencv2/core/hal/intrin.hpp>
 
+#include "algo/multiversion.hpp"
+#include "algo/pixel_rounding.hpp"
+
 namespace hitchview::algo {
 namespace {
 
@@ -149,10 +152,10 @@ bool PullAt(const Template& t, const cv::Mat1b& to, const Eigen::Vector2i& place
 /// leaves the picture.
 bool Step(const Template& t, const Matrix2f& covariance, const cv::Mat1b& to, Vector2f& found_px,
           float& length_px) {
-    const Vector2f eighths = (kEighths * found_px).array().round();
-    const Vector2f aside_px = found_px - eighths / kEighths;
+    const Eigen::Vector2i eighths = Round(kEighths * found_px);
+    const Vector2f aside_px = found_px - eighths.cast<float>() / kEighths;
     Vector2f pull;
-    if (!PullAt(t, to, eighths.cast<int>(), pull)) return false;
+    if (!PullAt(t, to, eighths, pull)) return false;
     const Vector2f step = covariance * (pull + kPrior * aside_px) - aside_px;
     found_px += step.cwiseMin(1.0F).cwiseMax(-1.0F);
     length_px = step.norm();
@@ -161,7 +164,9 @@ bool Step(const Template& t, const Matrix2f& covariance, const cv::Mat1b& to, Ve
 
 }  // namespace
 
-float RefineMatch(const cv::Mat1b& from, int x, int y, const cv::Mat1b& to, Vector2f& found_px) {
+HV_MULTIVERSION __attribute__((flatten)) float RefineMatch(const cv::Mat1b& from, int x, int y,
+                                                           const cv::Mat1b& to,
+                                                           Vector2f& found_px) {
     if (!Fits(from, x, y)) return 0;
     const Template t = Cut(from, x, y);
     const float told = t.information(0, 0) / (t.information(0, 0) + kPrior);

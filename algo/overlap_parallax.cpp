@@ -101,7 +101,8 @@ OverlapParallax::OverlapParallax(const PerUnit<UnitGeometry>& geometry,
              options.labels),
       matching_(NodesOver(views[Unit::kTractor]->height_px(), kRowPitch_px), max_cols_,
                 options.labels, options.matching),
-      matches_(static_cast<std::size_t>(matching_.rows() * max_cols_)) {
+      node_curves_(static_cast<std::size_t>(matching_.rows() * max_cols_)),
+      matches_(node_curves_.size()) {
     const double surface = options_.beyond_per_m / Span_per_m() * (options_.labels - 1);
     for (int k = 0; k < options_.labels; ++k) {
         bias_[static_cast<std::size_t>(k)] =
@@ -249,10 +250,11 @@ void OverlapParallax::CompareNode(int row, int col) {
     Cost* cost = matching_.costs(row, col);
     const int x = NodeX(col);
     const int y = NodeY(row);
-    const Curve curve = CurveAt(x, y);
+    Curve& curve = NodeCurve(row, col);
+    curve = HasSignature(x, y) ? CurveAt(x, y) : Curve{};
     const int tried = reach_.At(row, ColumnOf(col));
     matching_.tried(row, col) = static_cast<std::uint8_t>(tried);
-    if (!curve.known || !HasSignature(x, y)) {
+    if (!curve.known) {
         std::fill(cost, cost + tried, kUnseen);
         return;
     }
@@ -276,8 +278,8 @@ std::optional<ParallaxMatch> OverlapParallax::MatchOf(const PerUnit<MatchView>& 
                                                       int col) {
     const int x = NodeX(col);
     const int y = NodeY(row);
-    const Curve curve = CurveAt(x, y);
-    if (!curve.known || !HasSignature(x, y)) {
+    const Curve& curve = NodeCurve(row, col);
+    if (!curve.known) {
         reach_.Note(row, ColumnOf(col), 0);  // takes what its neighbours take
         return std::nullopt;
     }

@@ -85,6 +85,7 @@ class OverlapParallax {
     [[nodiscard]] std::optional<SightLine> OtherSight(const Eigen::Vector3d& ray) const;
     [[nodiscard]] Curve CurveOf(const Sight& sight, const Eigen::Matrix3d& R_tractor_trailer) const;
     [[nodiscard]] Curve CurveAt(int x, int y) const;
+    [[nodiscard]] Curve& NodeCurve(int row, int col) { return node_curves_[Index(row, col)]; }
     bool ChooseColumns();
     [[nodiscard]] std::pair<int, int> TrailerColumns() const;
     void Compare(const PerUnit<MatchView>& views);
@@ -122,6 +123,7 @@ class OverlapParallax {
     LabelReach reach_;
     int left_px_ = 0;  // of the first column of nodes
     SemiGlobalMatching matching_;
+    std::vector<Curve> node_curves_;  // of the nodes; not known where there is no signature, too
     std::vector<std::optional<ParallaxMatch>> matches_;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "algo/integer_patch.hpp"
+#include "algo/pixel_rounding.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -33,10 +34,6 @@ bool Fits(const cv::Mat1b& image, const Vector2f& centre, int spare) {
     return centre.x() >= left && centre.y() >= left &&
            centre.x() < static_cast<float>(image.cols - 1) - right &&
            centre.y() < static_cast<float>(image.rows - 1) - left;
-}
-
-Vector2i Round(const Vector2f& v) {
-    return {static_cast<int>(std::lround(v.x())), static_cast<int>(std::lround(v.y()))};
 }
 
 /// The patch that is looked for. Sums of products are covariances, times kArea^2, in the

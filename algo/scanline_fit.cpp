@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <opencv2/core/hal/intrin.hpp>
 
 #include "algo/multiversion.hpp"
 
@@ -103,7 +104,7 @@ ScanlineFit::ScanlineFit(int rows, int max_cols, const ScanlineFitOptions& optio
       max_cols_(max_cols),
       options_(options),
       change_(PriceOf(options.change_cost)),
-      cost_(Index(rows, 0)),
+      cost_(Index(rows, 0) + Ballot::kMost),
       heard_(Index(rows, 0)),
       wish_(Index(1, 0)),
       price_(static_cast<std::size_t>(max_cols * (kValues + 2 * options.most_steps)), kNever),
@@ -136,10 +137,12 @@ ScanlineFit::Ballot ScanlineFit::BallotFor(float value_px) const {
 
 void ScanlineFit::Vote(int row, int col, const Ballot& ballot, float weight) {
     Price* cost = cost_.data() + Index(row, col) + ballot.first;
-    for (int i = 0; i < ballot.count; ++i) {
-        const float votes = weight * ballot.shares[static_cast<std::size_t>(i)];
-        cost[i] = static_cast<Price>(cost[i] - static_cast<int>(votes + 0.5F));
-    }
+    const auto votes = [&](std::size_t i) {
+        const cv::v_float32x4 shares = cv::v_load(ballot.shares.data() + i);
+        return cv::v_trunc(shares * cv::v_setall_f32(weight) + cv::v_setall_f32(0.5F));
+    };
+    static_assert(Ballot::kMost == 8);
+    cv::v_store(cost, cv::v_load(cost) - cv::v_pack(votes(0), votes(4)));
 }
 
 void ScanlineFit::Solve() {

@@ -31,7 +31,7 @@ class ScanlineFit {
         static constexpr std::size_t kMost = 8;
         int first = 0;  ///< of these values
         int count = 0;
-        std::array<float, kMost> shares;
+        std::array<float, kMost> shares{};  ///< 0 from `count` on
     };
 
     /// `tolerance_px` must be less than Ballot::kMost / 2 steps, and the votes of a node be no more
