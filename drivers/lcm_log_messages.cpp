@@ -1,8 +1,10 @@
 #include "drivers/lcm_log_messages.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "drivers/lcm_message_reader.hpp"
 #include "lcmtypes/bot_core_image_t.h"
@@ -100,6 +102,22 @@ std::vector<std::string_view> TakeStrings(LcmMessageReader& reader, int count) {
 }
 
 }  // namespace
+
+LoggedKind KindOf(std::span<const std::uint8_t> message) {
+    const std::array<std::pair<std::int64_t, LoggedKind>, 7> kinds{{
+        {__bot_core_image_t_get_hash(), LoggedKind::kImage},
+        {__hitchview_can_frame_t_get_hash(), LoggedKind::kCanFrame},
+        {__hitchview_hitch_angle_t_get_hash(), LoggedKind::kHitchAngle},
+        {__hitchview_panorama_status_t_get_hash(), LoggedKind::kStatus},
+        {__hitchview_clock_t_get_hash(), LoggedKind::kClock},
+        {__hitchview_event_t_get_hash(), LoggedKind::kEvent},
+        {__hitchview_rig_t_get_hash(), LoggedKind::kRig},
+    }};
+    const auto fingerprint = LcmMessageReader(message).Take<std::int64_t>();
+    const auto* const kind =
+        std::ranges::find(kinds, fingerprint, &std::pair<std::int64_t, LoggedKind>::first);
+    return kind == kinds.end() ? LoggedKind::kUnknown : kind->second;
+}
 
 Result<LoggedImage> ParseLoggedImage(std::span<const std::uint8_t> message) {
     LcmMessageReader reader(message);

@@ -18,6 +18,19 @@ namespace hitchview::drivers {
 // what they return borrows the message; kCorrupted: wrong type, a count or length that is negative
 // or reaches past the end, bytes left over, or a value outside its range.
 
+/// What a message says that it is, by the fingerprint that it begins with.
+enum class LoggedKind {
+    kUnknown,
+    kImage,
+    kCanFrame,
+    kHitchAngle,
+    kStatus,
+    kClock,
+    kEvent,
+    kRig,
+};
+LoggedKind KindOf(std::span<const std::uint8_t> message);
+
 /// A bot_core.image_t: a panorama, a camera's frame, or a picture of someone else's.
 struct LoggedImage {
     std::int64_t utime_us = 0;
