@@ -6,9 +6,9 @@
 namespace hitchview::app {
 
 struct CheckOptions {
-    std::vector<std::filesystem::path> logs;  ///< files and folders of segments, in order
-    std::filesystem::path json;               ///< file for all figures; empty: none
-    std::filesystem::path repair;             ///< log for all whole events; empty: none
+    std::vector<std::filesystem::path> logs{};  ///< files and folders of segments, in order
+    std::filesystem::path json{};               ///< file for all figures; empty: none
+    std::filesystem::path repair{};             ///< log for all whole events; empty: none
 };
 
 /// Tells how good a recording is and prints a table. Returns the exit code: 0 good, 1 bad, 2 it

@@ -4,6 +4,7 @@
 
 #include "app/evaluation_statistics.hpp"
 #include "app/log_sets.hpp"
+#include "app/text_table.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -15,6 +16,11 @@ constexpr std::size_t kMostListed = 1000;
 void Widen(double value, std::optional<double>& least, std::optional<double>& most) {
     least = std::min(least.value_or(value), value);
     most = std::max(most.value_or(value), value);
+}
+
+/// Texts of a log may hold any bytes; reports are UTF-8.
+std::string Shown(std::string_view text) {
+    return Printable(std::string(text));
 }
 
 std::optional<double> MiddlePeriod_ms(const std::vector<CameraFigures>& cameras) {
@@ -123,7 +129,7 @@ bool LogCheck::AddEvent(std::span<const std::uint8_t> message) {
     event_messages_.Add(event.sequence);
     if (counts_.listed_events.size() < kMostListed)
         counts_.listed_events.push_back(
-            {event.utime_us, event.code, std::string(event.subject), std::string(event.text)});
+            {event.utime_us, event.code, Shown(event.subject), Shown(event.text)});
     return true;
 }
 
@@ -132,7 +138,7 @@ bool LogCheck::AddRig(std::span<const std::uint8_t> message) {
     const auto logged = drivers::ParseLoggedRig(message);
     if (!logged) return false;
     counts_.has_rig = true;
-    counts_.calibration_id = logged.value().calibration_id;
+    counts_.calibration_id = Shown(logged.value().calibration_id);
     rig_period_ms_ = logged.value().period_ms;
     for (const std::string_view channel : logged.value().camera_channels)
         if (IsCameraChannel(channel)) Camera(channel);

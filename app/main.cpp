@@ -212,6 +212,8 @@ int main(int argc, char** argv) {
     const CLI::App& cameras_verb = AddCameras(app, cameras);
     CheckOptions check;
     const CLI::App& check_verb = AddCheck(app, check);
+    ExportOptions exporting;
+    const CLI::App& export_verb = AddExport(app, exporting);
     app.add_subcommand("view", "Show the published panorama: hitchview view --help");
     app.add_subcommand("eval", "Measure recordings of views and panoramas: hitchview eval --help");
 
@@ -226,5 +228,6 @@ int main(int argc, char** argv) {
     if (bench_verb.parsed()) return BenchVerb(bench, stop);
     if (cameras_verb.parsed()) return CamerasVerb(cameras);
     if (check_verb.parsed()) return CheckVerb(check);
+    if (export_verb.parsed()) return ExportVerb(exporting);
     return ReplayVerb(run, stop);
 }

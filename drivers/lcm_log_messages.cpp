@@ -67,11 +67,24 @@ bool IsUpTo(T value, T largest) {
     return value >= 0 && value <= largest;
 }
 
+bool HasSoundId(const hal::CanFrame& frame) {
+    constexpr std::uint32_t kStandard = 0x7FF;
+    constexpr std::uint32_t kExtended = 0x1FFFFFFF;
+    return frame.id <= (frame.extended ? kExtended : kStandard) ||
+           frame.kind == hal::CanFrameKind::kError;
+}
+
 /// Whether a CAN frame of the message can have been on a bus.
 bool IsSound(const hal::CanFrame& frame, std::size_t data_bytes) {
     const std::size_t largest = frame.fd ? 64 : 8;
     const bool remote = frame.kind == hal::CanFrameKind::kRemote;
-    return frame.size_bytes <= largest && data_bytes == (remote ? 0 : frame.size_bytes);
+    return HasSoundId(frame) && frame.fd_flags <= 15 && frame.size_bytes <= largest &&
+           data_bytes == (remote ? 0 : frame.size_bytes);
+}
+
+/// Before the year 2286: what a candump log has digits for.
+bool IsEpoch(std::int64_t utime_us) {
+    return utime_us >= 0 && utime_us < 10'000'000'000'000'000;
 }
 
 hal::CanFrame TakeCanFrame(LcmMessageReader& reader) {
@@ -144,7 +157,7 @@ Result<LoggedCanFrame> ParseLoggedCanFrame(std::span<const std::uint8_t> message
     const std::string_view bus = reader.TakeString();
     hal::CanFrame frame = TakeCanFrame(reader);
     const auto data = reader.TakeBytes(reader.Take<std::int8_t>());
-    const bool sound = reader.at_end() && IsSound(frame, data.size()) && utime_us >= 0 &&
+    const bool sound = reader.at_end() && IsSound(frame, data.size()) && IsEpoch(utime_us) &&
                        static_cast<std::int8_t>(frame.kind) <= kLastKind;
     if (!sound) return Error::kCorrupted;
     frame.received_at = received_at;

@@ -248,7 +248,7 @@ TEST_F(LogCheckTest, TheVerbTellsByItsExitCode) {
         WriteThreeCameras(log);
     }
     const std::string json = folder_ / "check.json";
-    EXPECT_EQ(CheckVerb({.logs = {file_}, .json = json, .repair = {}}), 0);
+    EXPECT_EQ(CheckVerb({.logs = {file_}, .json = json}), 0);
     std::ifstream in(json);
     const auto report = nlohmann::json::parse(in);
     EXPECT_EQ(report["verdict"], "good");
@@ -256,10 +256,9 @@ TEST_F(LogCheckTest, TheVerbTellsByItsExitCode) {
     EXPECT_TRUE(report["hitch_angle"]["least_rad"].is_null());
 
     std::filesystem::resize_file(file_, std::filesystem::file_size(file_) - 1);
-    EXPECT_EQ(CheckVerb({.logs = {file_}, .json = {}, .repair = {}}), 1);
-    EXPECT_EQ(CheckVerb({.logs = {folder_ / "absent"}, .json = {}, .repair = {}}), 2);
-    EXPECT_EQ(
-        CheckVerb({.logs = {folder_.Write("text.lcm", "not a log")}, .json = {}, .repair = {}}), 2);
+    EXPECT_EQ(CheckVerb({.logs = {file_}}), 1);
+    EXPECT_EQ(CheckVerb({.logs = {folder_ / "absent"}}), 2);
+    EXPECT_EQ(CheckVerb({.logs = {folder_.Write("text.lcm", "not a log")}}), 2);
 }
 
 }  // namespace
