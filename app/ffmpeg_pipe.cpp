@@ -29,8 +29,8 @@ std::vector<std::string> Arguments(const std::filesystem::path& file,
         std::to_string(options.size_px.width) + "x" + std::to_string(options.size_px.height);
     // H.264 wants even sides; players take BT.709 for granted.
     const std::string filter =
-        "pad=ceil(iw/2)*2:ceil(ih/"
-        "2)*2,scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd,"
+        "pad=ceil(iw/2)*2:ceil(ih/2)*2,"
+        "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd,"
         "format=yuv420p";
     return {options.program, "-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo",
             "-pix_fmt", "bgr24", "-video_size", size, "-framerate", std::to_string(options.rate_hz),

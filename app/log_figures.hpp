@@ -25,7 +25,7 @@ struct CameraFigures {
     std::uint64_t time_gaps = 0;  ///< more than 1.5 periods between two frames
     std::optional<double> longest_gap_ms;
     std::optional<double> period_ms;  ///< from one sequence number to the next, on average
-    std::optional<double> drift_ppm;  ///< of the period against the middle one of all cameras
+    std::optional<double> drift_ppm;  ///< of the period against the middle one; from 10 s on
 };
 
 /// Frames of the cameras, those that lie within half a period of each other put together.

@@ -135,8 +135,8 @@ std::string Verdict(const LogVerdict& verdict) {
 }  // namespace
 
 std::string LogTable(const LogFigures& figures, const LogVerdict& verdict) {
-    return Recording(figures) + Cameras(figures) + Vehicle(figures) + Panoramas(figures.panoramas) +
-           Events(figures) + Verdict(verdict);
+    return Recording(figures) + Cameras(figures) + Vehicle(figures) + Events(figures) +
+           Verdict(verdict);
 }
 
 }  // namespace hitchview::app

@@ -173,7 +173,8 @@ TEST_F(LogCheckTest, ListsEventsAndCountsMissingPanoramas) {
     EXPECT_EQ(figures.panoramas.status.lost, 3U);
     ASSERT_EQ(figures.listed_events.size(), 1U);
     EXPECT_THAT(LogTable(figures, Judge(figures)),
-                HasSubstr("2023-11-14T22:13:25.000000Z 1 front: no frame for 500 ms"));
+                HasSubstr("deadlines missed\nevent         2023-11-14T22:13:25.000000Z 1 front: no "
+                          "frame for 500 ms"));
 }
 
 TEST_F(LogCheckTest, AMessageThatIsNotWhatItsChannelHoldsIsCounted) {
