@@ -58,10 +58,10 @@ int Repair(LogRecording& recording, const CheckOptions& options) {
 
 }  // namespace
 
-int CheckVerb(const CheckOptions& options) {
+int CheckVerb(const CheckOptions& options, const std::atomic<bool>& stop) {
     const auto files = LogFiles(options.logs);
     if (!files) return Fail(files.error(), kUnreadable);
-    LogRecording recording(files.value());
+    LogRecording recording(files.value(), stop);
     const auto figures = Measure(recording);
     if (!figures) return Fail(figures.error(), kUnreadable);
     const LogVerdict verdict = Judge(figures.value());

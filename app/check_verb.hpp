@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <vector>
 
@@ -12,7 +13,7 @@ struct CheckOptions {
 };
 
 /// Tells how good a recording is and prints a table. Returns the exit code: 0 good, 1 bad, 2 it
-/// cannot be read or the repaired log exists already, 3 a file cannot be written.
-int CheckVerb(const CheckOptions& options);
+/// cannot be read, the repaired log exists already or `stop` was set, 3 a file cannot be written.
+int CheckVerb(const CheckOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace hitchview::app

@@ -79,10 +79,10 @@ int Tell(const LogRecording& recording, const LogExport& out) {
 
 }  // namespace
 
-int ExportVerb(const ExportOptions& options) {
+int ExportVerb(const ExportOptions& options, const std::atomic<bool>& stop) {
     const auto files = LogFiles(options.logs);
     if (!files) return Fail(files.error(), kUnreadable);
-    LogRecording recording(files.value());
+    LogRecording recording(files.value(), stop);
     const auto out = Open(options, recording);
     if (!out) return Fail(out.error(), kMachineFailed);
     const int failed = Copy(recording, *out.value());

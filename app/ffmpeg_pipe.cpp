@@ -49,7 +49,13 @@ int Spawn(std::vector<std::string> arguments, int input, pid_t& process) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
-    const int refused = posix_spawnp(&process, argv[0], &actions, nullptr, argv.data(), environ);
+    // In a group of its own: who stops this program from the terminal still gets a whole video.
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    const int refused =
+        posix_spawnp(&process, argv[0], &actions, &attributes, argv.data(), environ);
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     return refused;
 }

@@ -42,7 +42,8 @@ hal::Checked<std::vector<fs::path>> LogFiles(const std::vector<fs::path>& logs) 
     return files;
 }
 
-LogRecording::LogRecording(std::vector<fs::path> files) : files_(std::move(files)) {
+LogRecording::LogRecording(std::vector<fs::path> files, const std::atomic<bool>& stop)
+    : files_(std::move(files)), stop_(stop) {
     std::error_code failed;
     for (const fs::path& file : files_) {
         const std::uintmax_t bytes = fs::file_size(file, failed);
@@ -51,7 +52,7 @@ LogRecording::LogRecording(std::vector<fs::path> files) : files_(std::move(files
 }
 
 hal::Result<drivers::LcmLogEvent> LogRecording::Next() {
-    while (reader_ != nullptr || OpenNext()) {
+    while (!stop_ && (reader_ != nullptr || OpenNext())) {
         auto event = reader_->Next();
         if (event) return event;
         if (event.error() != hal::Error::kEndOfStream) {
@@ -60,6 +61,7 @@ hal::Result<drivers::LcmLogEvent> LogRecording::Next() {
         }
         CloseSegment();
     }
+    if (stop_) failure_ = "stopped";
     return failure_.empty() ? hal::Error::kEndOfStream : hal::Error::kFailed;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -21,8 +22,8 @@ hal::Checked<std::vector<std::filesystem::path>> LogFiles(
 /// Thread: one.
 class LogRecording {
  public:
-    /// From LogFiles.
-    explicit LogRecording(std::vector<std::filesystem::path> files);
+    /// `files` from LogFiles. `stop`: set from outside, reading then fails; outlives this.
+    LogRecording(std::vector<std::filesystem::path> files, const std::atomic<bool>& stop);
 
     /// Borrowed until the next call. kEndOfStream: no further event. kFailed: failure() says why.
     hal::Result<drivers::LcmLogEvent> Next();
@@ -42,6 +43,7 @@ class LogRecording {
     void CloseSegment();
 
     std::vector<std::filesystem::path> files_;
+    const std::atomic<bool>& stop_;
     std::uint64_t size_bytes_ = 0;
     std::size_t next_file_ = 0;
     std::unique_ptr<drivers::LcmLogReader> reader_;

@@ -227,7 +227,7 @@ int main(int argc, char** argv) {
     if (scenarios_verb.parsed()) return ScenariosVerb(scenarios, stop);
     if (bench_verb.parsed()) return BenchVerb(bench, stop);
     if (cameras_verb.parsed()) return CamerasVerb(cameras);
-    if (check_verb.parsed()) return CheckVerb(check);
-    if (export_verb.parsed()) return ExportVerb(exporting);
+    if (check_verb.parsed()) return CheckVerb(check, stop);
+    if (export_verb.parsed()) return ExportVerb(exporting, stop);
     return ReplayVerb(run, stop);
 }

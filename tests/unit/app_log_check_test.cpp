@@ -23,13 +23,14 @@ using testing::Contains;
 using testing::HasSubstr;
 using tests::MessageLog;
 
+const std::atomic<bool> kGoOn{false};
 constexpr std::int64_t kPeriod_ns = 33'000'000;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr int kFrames = 3000;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 LogFigures Measured(const std::vector<std::filesystem::path>& logs) {
-    LogRecording recording(LogFiles(logs).value());
+    LogRecording recording(LogFiles(logs).value(), kGoOn);
     LogCheck check;
     while (const auto event = recording.Next()) check.Add(event.value());
     LogFigures figures = check.Figures();
@@ -222,7 +223,7 @@ TEST_F(LogCheckTest, ARepairedLogHoldsEveryWholeEventAndLiblcmReadsIt) {
     log.bytes.resize(log.bytes.size() - 1);
     tests::WriteBytes(file_, log.bytes);
     const std::string repaired = folder_ / "repaired.lcm";
-    LogRecording recording({file_});
+    LogRecording recording({file_}, kGoOn);
     const auto repair = RepairLog(recording, repaired);
     ASSERT_TRUE(repair.ok());
     EXPECT_EQ(repair.value().events, 47U);
@@ -243,13 +244,23 @@ TEST_F(LogCheckTest, ARepairedLogHoldsEveryWholeEventAndLiblcmReadsIt) {
     lcm_eventlog_destroy(stock);
 }
 
+TEST_F(LogCheckTest, AStopLeavesNoHalfRepairedLog) {
+    tests::WriteBytes(file_, tests::RandomLog(1, 50).bytes);
+    const std::atomic<bool> stop{true};
+    LogRecording recording({file_}, stop);
+    const auto repair = RepairLog(recording, folder_ / "repaired.lcm");
+    ASSERT_FALSE(repair.ok());
+    EXPECT_EQ(repair.error(), "stopped");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "repaired.lcm"));
+}
+
 TEST_F(LogCheckTest, TheVerbTellsByItsExitCode) {
     {
         MessageLog log(file_);
         WriteThreeCameras(log);
     }
     const std::string json = folder_ / "check.json";
-    EXPECT_EQ(CheckVerb({.logs = {file_}, .json = json}), 0);
+    EXPECT_EQ(CheckVerb({.logs = {file_}, .json = json}, kGoOn), 0);
     std::ifstream in(json);
     const auto report = nlohmann::json::parse(in);
     EXPECT_EQ(report["verdict"], "good");
@@ -257,9 +268,9 @@ TEST_F(LogCheckTest, TheVerbTellsByItsExitCode) {
     EXPECT_TRUE(report["hitch_angle"]["least_rad"].is_null());
 
     std::filesystem::resize_file(file_, std::filesystem::file_size(file_) - 1);
-    EXPECT_EQ(CheckVerb({.logs = {file_}}), 1);
-    EXPECT_EQ(CheckVerb({.logs = {folder_ / "absent"}}), 2);
-    EXPECT_EQ(CheckVerb({.logs = {folder_.Write("text.lcm", "not a log")}}), 2);
+    EXPECT_EQ(CheckVerb({.logs = {file_}}, kGoOn), 1);
+    EXPECT_EQ(CheckVerb({.logs = {folder_ / "absent"}}, kGoOn), 2);
+    EXPECT_EQ(CheckVerb({.logs = {folder_.Write("text.lcm", "not a log")}}, kGoOn), 2);
 }
 
 }  // namespace

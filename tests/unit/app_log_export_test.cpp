@@ -25,6 +25,7 @@ using testing::HasSubstr;
 using tests::LoggedPicture;
 using tests::MessageLog;
 
+const std::atomic<bool> kGoOn{false};
 constexpr std::int64_t kPeriod_ns = 40'000'000;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
@@ -70,7 +71,7 @@ TEST_F(LogExportTest, ACandumpLogComesBackLineForLine) {
             log.Can(frame.value());
         }
     }
-    EXPECT_EQ(ExportVerb({.logs = {file_}, .candump = out_}), 0);
+    EXPECT_EQ(ExportVerb({.logs = {file_}, .candump = out_}, kGoOn), 0);
     EXPECT_EQ(tests::FileText(out_), candump);
 }
 
@@ -84,7 +85,7 @@ TEST_F(LogExportTest, StatusBecomesATableWithTheHitchAngleBesideIt) {
         log.HitchAngle(2 * kSecond_ns, 1, hal::HitchAngleQuality::kStale, std::nan(""));
         log.Status(3 * kSecond_ns, 3, 0.5);
     }
-    EXPECT_EQ(ExportVerb({.logs = {file_}, .csv = out_}), 0);
+    EXPECT_EQ(ExportVerb({.logs = {file_}, .csv = out_}, kGoOn), 0);
     std::istringstream lines(tests::FileText(out_));
     std::vector<std::string> read;
     for (std::string line; std::getline(lines, line);) read.push_back(line);
@@ -125,7 +126,7 @@ TEST_F(LogExportTest, PicturesOfEveryFormatBecomePngFilesOfTheSameColour) {
         log.Picture("CAM_OTHER", Grey(0, 0, 0));
         log.Picture("CAM_SIDE", {.fourcc = BOT_CORE_IMAGE_T_PIXEL_FORMAT_UYVY, .data = {1, 2}});
     }
-    EXPECT_EQ(ExportVerb({.logs = {file_}, .frames = out_, .camera = "side"}), 0);
+    EXPECT_EQ(ExportVerb({.logs = {file_}, .frames = out_, .camera = "side"}, kGoOn), 0);
     const auto files = FilesIn(out_);
     ASSERT_EQ(files.size(), pictures.size());
     for (const auto& file : files) {
@@ -142,7 +143,7 @@ TEST_F(LogExportTest, FrameNamesTellNumberAndTime) {
         log.Picture("PANORAMA", Grey(100, 0, 0));
         log.Picture("PANORAMA", Grey(100, kPeriod_ns, 1));
     }
-    EXPECT_EQ(ExportVerb({.logs = {file_}, .frames = out_}), 0);
+    EXPECT_EQ(ExportVerb({.logs = {file_}, .frames = out_}, kGoOn), 0);
     EXPECT_EQ(FilesIn(out_).back().filename(), "000001_1700000000040000.png");
 }
 
@@ -157,7 +158,7 @@ TEST_F(LogExportTest, AVideoShowsEachPanoramaInItsTime) {
         log.Picture("PANORAMA", {.captured_ns = 20 * kPeriod_ns, .sequence = 20});
     }
     const std::string video = folder_ / "-odd name.mp4";
-    EXPECT_EQ(ExportVerb({.logs = {file_}, .mp4 = video}), 0);
+    EXPECT_EQ(ExportVerb({.logs = {file_}, .mp4 = video}, kGoOn), 0);
     cv::VideoCapture capture(video);
     EXPECT_NEAR(capture.get(cv::CAP_PROP_FPS), 25, 1e-3);
     std::vector<double> greys;
@@ -187,7 +188,7 @@ void WriteMixedLog(const std::string& file, int pictures) {
 
 TEST_F(LogExportTest, AnMcapFileHoldsEverythingAndItsIndexesLeadToIt) {
     WriteMixedLog(file_, 3);
-    EXPECT_EQ(ExportVerb({.logs = {file_}, .mcap = out_}), 0);
+    EXPECT_EQ(ExportVerb({.logs = {file_}, .mcap = out_}, kGoOn), 0);
     const tests::McapReader mcap(tests::FileText(out_));
     ASSERT_EQ(mcap.messages.size(), 7U);
     EXPECT_EQ(mcap.counted_messages, 7U);
@@ -208,7 +209,7 @@ TEST_F(LogExportTest, AnMcapFileHoldsEverythingAndItsIndexesLeadToIt) {
 
 TEST_F(LogExportTest, AnMcapPictureIsTheJpegOfTheLogWithTheDefinitionThatExplainsIt) {
     WriteMixedLog(file_, 1);
-    EXPECT_EQ(ExportVerb({.logs = {file_}, .mcap = out_, .camera = "side"}), 0);
+    EXPECT_EQ(ExportVerb({.logs = {file_}, .mcap = out_, .camera = "side"}, kGoOn), 0);
     const tests::McapReader mcap(tests::FileText(out_));
     const tests::McapMessage& picture = mcap.messages.front();
     ASSERT_EQ(picture.topic, "CAM_SIDE");
@@ -246,7 +247,7 @@ TEST_F(LogExportTest, ALongMcapFileHasSeveralChunks) {
             log.Picture("CAM_SIDE", picture);
         }
     }
-    EXPECT_EQ(ExportVerb({.logs = {file_}, .mcap = out_}), 0);
+    EXPECT_EQ(ExportVerb({.logs = {file_}, .mcap = out_}, kGoOn), 0);
     const tests::McapReader mcap(tests::FileText(out_));
     EXPECT_EQ(mcap.chunks, 3U);
     EXPECT_EQ(mcap.messages.size(), 10U);
@@ -254,9 +255,9 @@ TEST_F(LogExportTest, ALongMcapFileHasSeveralChunks) {
 
 TEST_F(LogExportTest, NothingOfThatKindIsSaidByTheExitCode) {
     WriteMixedLog(file_, 1);
-    EXPECT_EQ(ExportVerb({.logs = {file_}, .frames = out_, .camera = "absent"}), 1);
-    EXPECT_EQ(ExportVerb({.logs = {folder_ / "absent"}, .csv = out_}), 2);
-    EXPECT_EQ(ExportVerb({.logs = {file_}, .csv = "/nowhere/x.csv"}), 3);
+    EXPECT_EQ(ExportVerb({.logs = {file_}, .frames = out_, .camera = "absent"}, kGoOn), 1);
+    EXPECT_EQ(ExportVerb({.logs = {folder_ / "absent"}, .csv = out_}, kGoOn), 2);
+    EXPECT_EQ(ExportVerb({.logs = {file_}, .csv = "/nowhere/x.csv"}, kGoOn), 3);
 }
 
 }  // namespace
