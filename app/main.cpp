@@ -8,6 +8,7 @@
 #include "app/bench_verb.hpp"
 #include "app/cameras_verb.hpp"
 #include "app/demo_verb.hpp"
+#include "app/log_arguments.hpp"
 #include "app/program.hpp"
 #include "app/replay_verb.hpp"
 #include "app/scenario_verb.hpp"
@@ -209,6 +210,10 @@ int main(int argc, char** argv) {
     const CLI::App& bench_verb = AddBench(app, bench);
     CamerasOptions cameras;
     const CLI::App& cameras_verb = AddCameras(app, cameras);
+    CheckOptions check;
+    const CLI::App& check_verb = AddCheck(app, check);
+    ExportOptions exporting;
+    const CLI::App& export_verb = AddExport(app, exporting);
     app.add_subcommand("view", "Show the published panorama: hitchview view --help");
     app.add_subcommand("eval", "Measure recordings of views and panoramas: hitchview eval --help");
 
@@ -222,5 +227,7 @@ int main(int argc, char** argv) {
     if (scenarios_verb.parsed()) return ScenariosVerb(scenarios, stop);
     if (bench_verb.parsed()) return BenchVerb(bench, stop);
     if (cameras_verb.parsed()) return CamerasVerb(cameras);
+    if (check_verb.parsed()) return CheckVerb(check, stop);
+    if (export_verb.parsed()) return ExportVerb(exporting, stop);
     return ReplayVerb(run, stop);
 }

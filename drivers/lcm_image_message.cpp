@@ -4,8 +4,8 @@
 #include <charconv>
 #include <optional>
 #include <string_view>
-#include <type_traits>
 
+#include "drivers/lcm_message_reader.hpp"
 #include "lcmtypes/bot_core_image_t.h"
 
 namespace hitchview::drivers {
@@ -17,49 +17,6 @@ using hal::Result;
 
 constexpr int kLongestSide_px = 16384;
 constexpr int kMostProperties = 64;
-
-/// Takes big-endian values off the front of a message. After the first that is not there, every
-/// value is zero or empty and ok() is false.
-class MessageReader {
- public:
-    explicit MessageReader(std::span<const std::uint8_t> rest) : rest_(rest) {}
-
-    [[nodiscard]] bool ok() const { return ok_; }
-    [[nodiscard]] bool at_end() const { return ok_ && rest_.empty(); }
-
-    template <typename Int>
-    Int Take() {
-        std::make_unsigned_t<Int> value = 0;
-        for (const std::uint8_t byte : TakeBytes(sizeof(Int))) {
-            value = static_cast<std::make_unsigned_t<Int>>(value << 8 | byte);
-        }
-        return static_cast<Int>(value);
-    }
-
-    std::span<const std::uint8_t> TakeBytes(std::int64_t count) {
-        ok_ = ok_ && count >= 0 && static_cast<std::uint64_t>(count) <= rest_.size();
-        if (!ok_) return {};
-        const auto taken = rest_.first(static_cast<std::size_t>(count));
-        rest_ = rest_.subspan(taken.size());
-        return taken;
-    }
-
-    std::string_view TakeText(std::int64_t count) {
-        const auto bytes = TakeBytes(count);
-        return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-    }
-
-    /// A string of LCM: its length counts the NUL at its end.
-    std::string_view TakeString() {
-        const std::string_view text = TakeText(Take<std::int32_t>());
-        ok_ = ok_ && !text.empty() && text.back() == '\0';
-        return ok_ ? text.substr(0, text.size() - 1) : std::string_view{};
-    }
-
- private:
-    std::span<const std::uint8_t> rest_;
-    bool ok_ = true;
-};
 
 template <typename Int>
 bool ParseNumber(std::string_view text, Int& value, int base = 10) {
@@ -98,7 +55,7 @@ constexpr std::array<Property, 5> kProperties{{
 }};
 
 /// Which properties were seen, bit i for kProperties[i]; 0 when one is damaged.
-unsigned TakeProperties(MessageReader& reader, PanoramaImage& image) {
+unsigned TakeProperties(LcmMessageReader& reader, PanoramaImage& image) {
     unsigned seen = 0;
     const auto count = reader.Take<std::int32_t>();
     if (count < 0 || count > kMostProperties) return 0;
@@ -122,7 +79,7 @@ bool IsSide(int side_px) {
 
 Result<PanoramaImage> ParseImageMessage(std::span<const std::uint8_t> message) {
     constexpr unsigned kAllProperties = (1U << kProperties.size()) - 1;
-    MessageReader reader(message);
+    LcmMessageReader reader(message);
     if (reader.Take<std::int64_t>() != __bot_core_image_t_get_hash()) return Error::kCorrupted;
 
     PanoramaImage image;

@@ -10,7 +10,7 @@ packages=(
     libeigen3-dev libopencv-dev libhwy-dev liblcm-dev liblcm-bin libyaml-cpp-dev libcli11-dev
     nlohmann-json3-dev libturbojpeg0-dev libjpeg-dev
     libgtest-dev libgmock-dev libbenchmark-dev
-    iproute2 util-linux qemu-user
+    iproute2 util-linux qemu-user ffmpeg
 )
 
 # Taken where the release has libcamera 0.0.3 or later: Ubuntu 22.04 has not.
