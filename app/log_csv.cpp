@@ -15,7 +15,7 @@ using hal::Checked;
 using hal::Done;
 
 constexpr const char* kHeader =
-    "time,utime_us,sequence,capture_ns,latency_ms,cameras_missing,seam_left,seam_right,"
+    "time,utime_us,sequence,capture_ns,latency_ms,spread_ms,cameras_missing,seam_left,seam_right,"
     "seam_matches_left,seam_matches_right,features_tractor,features_trailer,total_ms,"
     "deadline_misses,dropped,articulation_deg,articulation_sigma_deg,hitch_angle_deg\n";
 
@@ -56,10 +56,10 @@ class CsvExport final : public LogExport {
         const hal::PanoramaStatus& s = logged.value().status;
         out_ << UtcText(logged.value().utime_us) << ',' << logged.value().utime_us << ','
              << s.sequence << ',' << s.captured_from.count() << ',' << std::setprecision(3)
-             << Milliseconds(s.published_at - s.captured_from) << ",0x" << std::hex
-             << s.cameras_missing << std::dec << ',' << ToString(s.seams[0]) << ','
-             << ToString(s.seams[1]) << ',' << s.seam_matches[0] << ',' << s.seam_matches[1] << ','
-             << s.unit_features[0] << ',' << s.unit_features[1] << ',' << s.total_ms << ','
+             << Milliseconds(s.published_at - s.captured_from) << ',' << Milliseconds(s.spread)
+             << ",0x" << std::hex << s.cameras_missing << std::dec << ',' << ToString(s.seams[0])
+             << ',' << ToString(s.seams[1]) << ',' << s.seam_matches[0] << ',' << s.seam_matches[1]
+             << ',' << s.unit_features[0] << ',' << s.unit_features[1] << ',' << s.total_ms << ','
              << s.deadline_misses << ',' << s.dropped;
         for (const double rad : {s.articulation_rad, s.articulation_sigma_rad, hitch_angle_rad_})
             AppendDegrees(rad);

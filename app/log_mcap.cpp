@@ -46,6 +46,7 @@ std::optional<Converted> Status(std::span<const std::uint8_t> message) {
                      {{"sequence", s.sequence},
                       {"capture_ns", s.captured_from.count()},
                       {"latency_ms", Milliseconds(s.published_at - s.captured_from)},
+                      {"spread_ms", Milliseconds(s.spread)},
                       {"cameras_missing", s.cameras_missing},
                       {"seam_left", ToString(s.seams[0])},
                       {"seam_right", ToString(s.seams[1])},

@@ -194,6 +194,7 @@ Result<LoggedStatus> ParseLoggedStatus(std::span<const std::uint8_t> message) {
     logged.utime_us = reader.Take<std::int64_t>();
     status.captured_from = Instant(reader.Take<std::int64_t>());
     status.published_at = Instant(reader.Take<std::int64_t>());
+    status.spread = Instant(reader.Take<std::int64_t>());
     status.cameras_missing = reader.Take<std::uint32_t>();
     const bool sound = TakeSeams(reader, status);
     for (int& matches : status.seam_matches) matches = reader.Take<std::int32_t>();

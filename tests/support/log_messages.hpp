@@ -123,6 +123,7 @@ class MessageLog {
         message.utime = Utime_us(at_ns);
         message.capture_ns = at_ns;
         message.publish_ns = at_ns + 40'000'000;
+        message.spread_ns = 7'000'000;
         message.cameras_missing = 5;
         message.seam_state[1] = HITCHVIEW_PANORAMA_STATUS_T_SEAM_LOCKED;
         message.total_ms = 12.5;

@@ -93,7 +93,7 @@ TEST_F(LogExportTest, StatusBecomesATableWithTheHitchAngleBesideIt) {
     const auto cells = [](const std::string& line) { return std::ranges::count(line, ',') + 1; };
     for (const std::string& line : read) EXPECT_EQ(cells(line), cells(read[0])) << line;
     EXPECT_EQ(read[1],
-              "1970-01-01T00:00:01.000000Z,1000000,1,1000000000,40.000,0x5,NO_OVERLAP,LOCKED,"
+              "1970-01-01T00:00:01.000000Z,1000000,1,1000000000,40.000,7.000,0x5,NO_OVERLAP,LOCKED,"
               "0,0,0,0,12.500,0,0,28.6479,0.0000,");
     EXPECT_THAT(read[2], testing::EndsWith(",0,0,,0.0000,14.3239"));
     EXPECT_THAT(read[3], testing::EndsWith(",28.6479,0.0000,"));
