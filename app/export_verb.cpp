@@ -22,6 +22,16 @@ int Fail(const std::string& why, int code) {
     return code;
 }
 
+/// Empty, or the file of the recording that would be overwritten.
+std::filesystem::path Overwritten(const ExportOptions& options,
+                                  const std::vector<std::filesystem::path>& files) {
+    std::error_code failed;
+    for (const auto& out : {options.mp4, options.candump, options.mcap, options.csv})
+        for (const auto& file : files)
+            if (std::filesystem::equivalent(out, file, failed)) return file;
+    return {};
+}
+
 /// From one picture to the next: the middle of the first hundred; empty if there are not two.
 std::optional<double> PicturePeriod_ms(LogRecording& recording, const PictureChoice& choice) {
     constexpr std::size_t kEnough = 100;
@@ -82,6 +92,9 @@ int Tell(const LogRecording& recording, const LogExport& out) {
 int ExportVerb(const ExportOptions& options, const std::atomic<bool>& stop) {
     const auto files = LogFiles(options.logs);
     if (!files) return Fail(files.error(), kUnreadable);
+    const std::filesystem::path overwritten = Overwritten(options, files.value());
+    if (!overwritten.empty())
+        return Fail(overwritten.string() + ": is the recording itself", kUnreadable);
     LogRecording recording(files.value(), stop);
     const auto out = Open(options, recording);
     if (!out) return Fail(out.error(), kMachineFailed);

@@ -19,9 +19,9 @@ struct ExportOptions {
 };
 
 /// Writes a recording, or a part of it, in a format of other programs. Returns the exit code: 0
-/// done, 1 nothing of that kind is in the recording, 2 it cannot be read or `stop` was set (what
-/// was written until then stays and is whole), 3 the file cannot be
-/// written or ffmpeg is not there.
+/// done, 1 nothing of that kind is in the recording, 2 it cannot be read, would be overwritten or
+/// `stop` was set (what was written until then stays and is whole), 3 the file cannot be written or
+/// ffmpeg is not there.
 int ExportVerb(const ExportOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace hitchview::app

@@ -157,16 +157,19 @@ std::optional<LcmLogReader::Place> LcmLogReader::FindHeader(std::uint64_t from,
 
 bool LcmLogReader::IsLossAt(std::uint64_t end, std::int64_t number) {
     const auto next = FindHeader(end, size_bytes());
-    if (!next) return IsZeroAt(end);
+    if (!next) return IsZeroFrom(end);
     const std::uint64_t missing = NumbersFrom(number, next->header.number) - 1;
     return missing >= 1 && missing <= MostEventsIn(next->at - end);
 }
 
-bool LcmLogReader::IsZeroAt(std::uint64_t end) {
+bool LcmLogReader::IsZeroFrom(std::uint64_t end) {
     std::array<std::uint8_t, 4096> memory{};
     const auto rest = std::min<std::uint64_t>(memory.size(), size_bytes() - end);
     const auto bytes = std::span(memory).first(static_cast<std::size_t>(rest));
-    return window_->Copy(end, bytes) && std::ranges::all_of(bytes, [](auto b) { return b == 0; });
+    // If its last byte is zero too, the zeros may have begun inside the event.
+    std::array<std::uint8_t, 1> last{};
+    return window_->Copy(end - 1, last) && last[0] != 0 && window_->Copy(end, bytes) &&
+           std::ranges::all_of(bytes, [](auto b) { return b == 0; });
 }
 
 bool LcmLogReader::HoldsLaterEvent(const Place& place, std::uint64_t end) {

@@ -77,7 +77,7 @@ class LcmLogReader {
     /// Whether the header behind event `number` was destroyed: the numbers go on after a gap, or
     /// there are zeros up to the end of the file, as a power cut leaves them.
     bool IsLossAt(std::uint64_t end, std::int64_t number);
-    bool IsZeroAt(std::uint64_t end);
+    bool IsZeroFrom(std::uint64_t end);
     bool HoldsLaterEvent(const Place& place, std::uint64_t end);
     std::uint64_t StartBefore(std::int64_t utime_us);
     void CountSkipped(const std::optional<Place>& next);

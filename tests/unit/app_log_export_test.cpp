@@ -168,6 +168,22 @@ TEST_F(LogExportTest, AVideoShowsEachPanoramaInItsTime) {
         EXPECT_NEAR(greys[i], i < 15 ? 50 : 200, 6) << "frame " << i;
 }
 
+TEST_F(LogExportTest, AVideoShortensPausesToTwoSecondsAndFollowsAClockThatBeginsAnew) {
+    if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ffmpeg";
+    {
+        MessageLog log(file_);
+        for (const std::int64_t period : {0, 1, 90'000, 90'001, 0, 1})
+            log.Picture("PANORAMA", Grey(50, period * kPeriod_ns, 0));
+    }
+    const std::string video = folder_ / "video.mp4";
+    EXPECT_EQ(ExportVerb({.logs = {file_}, .mp4 = video}, kGoOn), 0);
+    cv::VideoCapture capture(video);
+    int frames = 0;
+    for (cv::Mat frame; capture.read(frame);) ++frames;
+    constexpr int kTwoSeconds = 50;
+    EXPECT_EQ(frames, 6 + kTwoSeconds);
+}
+
 TEST_F(LogExportTest, WithoutFfmpegItIsSaidWhatToInstall) {
     const auto video = FfmpegPipe::Start(out_, {.size_px = {64, 32}, .program = "no-ffmpeg-here"});
     ASSERT_FALSE(video.ok());
@@ -251,6 +267,13 @@ TEST_F(LogExportTest, ALongMcapFileHasSeveralChunks) {
     const tests::McapReader mcap(tests::FileText(out_));
     EXPECT_EQ(mcap.chunks, 3U);
     EXPECT_EQ(mcap.messages.size(), 10U);
+}
+
+TEST_F(LogExportTest, ARecordingIsNotOverwritten) {
+    WriteMixedLog(file_, 1);
+    const std::string before = tests::FileText(file_);
+    EXPECT_EQ(ExportVerb({.logs = {folder_.path()}, .csv = file_}, kGoOn), 2);
+    EXPECT_EQ(tests::FileText(file_), before);
 }
 
 TEST_F(LogExportTest, NothingOfThatKindIsSaidByTheExitCode) {

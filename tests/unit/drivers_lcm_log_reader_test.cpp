@@ -5,6 +5,7 @@
 #include <set>
 
 #include "drivers/lcm_log_reader.hpp"
+#include "tests/support/heap_calls.hpp"
 #include "tests/support/random_log.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -139,6 +140,30 @@ TEST_F(LcmLogReaderTest, KeepsTheLastEventBeforeZerosThatAPowerCutLeft) {
     const ReadLog read = ReadAll(bytes);
     EXPECT_EQ(read.events, log.events);
     EXPECT_EQ(read.damage.torn_bytes, 10000U);
+}
+
+TEST_F(LcmLogReaderTest, AnEventThatEndsInSuchZerosIsTorn) {
+    RandomLog log(13, 20);
+    log.Append(1'700'000'001'000'000, "CAM_1", LogBytes(1000, 7));
+    LogBytes bytes = log.bytes;
+    std::fill(bytes.end() - 500, bytes.end(), std::uint8_t{0});
+    bytes.resize(bytes.size() + 10000);
+    EXPECT_EQ(ReadAll(bytes).events.size(), 20U);
+}
+
+TEST_F(LcmLogReaderTest, ALengthThatNothingConfirmsTakesNoMemory) {
+    RandomLog log(14, 3);
+    log.Append(1'700'000'001'000'000, "CAM_1", LogBytes(std::size_t{20} << 20, 7));
+    log.Append(1'700'000'001'000'001, "CAM_1", LogBytes(std::size_t{20} << 20, 7));
+    LogBytes bytes = log.bytes;
+    bytes[log.events[3].position_bytes + 25] ^= 0x80;  // ends in the middle of the next one
+    tests::WriteBytes(file_, bytes);
+    auto reader = LcmLogReader::Open(file_);
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE((*reader)->Next().ok());
+    const std::uint64_t before = tests::HeapCallsOfThisThread();
+    ASSERT_EQ((*reader)->Next().value().number, 4);
+    const std::uint64_t of_the_one_that_is_read = tests::kHeapCallsAreCounted ? 1 : 0;
+    EXPECT_EQ(tests::HeapCallsOfThisThread() - before, of_the_one_that_is_read);
 }
 
 TEST_F(LcmLogReaderTest, AMessageAboveTheLimitIsDamage) {
