@@ -106,7 +106,7 @@ struct LogFigures {
     SequenceFigures event_messages;
 
     [[nodiscard]] double Duration_s() const {
-        return static_cast<double>(last_us - first_us) / 1e6;
+        return (static_cast<double>(last_us) - static_cast<double>(first_us)) / 1e6;
     }
 };
 

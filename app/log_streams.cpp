@@ -87,8 +87,10 @@ void ClockOffset::Add(std::int64_t utime_us, Instant monotonic) {
 }
 
 void ClockOffset::AddLogTime(std::int64_t utime_us) {
-    constexpr std::int64_t kMostDisorder_us = 1'000'000;
-    const bool back = latest_us_ && utime_us < *latest_us_ - kMostDisorder_us;
+    // A damaged time may be any number: differences of integers could overflow.
+    constexpr double kMostDisorder_us = 1e6;
+    const bool back = latest_us_ && static_cast<double>(utime_us) <
+                                        static_cast<double>(*latest_us_) - kMostDisorder_us;
     if (back) ++figures_.log_steps_back;
     latest_us_ = back ? utime_us : std::max(latest_us_.value_or(utime_us), utime_us);
 }

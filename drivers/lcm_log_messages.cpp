@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -29,6 +30,16 @@ constexpr std::int8_t kWorstQuality = HITCHVIEW_HITCH_ANGLE_T_QUALITY_STALE;
 constexpr std::int8_t kBestSeam = HITCHVIEW_PANORAMA_STATUS_T_SEAM_LOCKED;
 constexpr std::int8_t kLastKind = HITCHVIEW_CAN_FRAME_T_KIND_ERROR;
 
+/// Before the year 2286: what a candump log has digits for.
+bool IsEpoch(std::int64_t utime_us) {
+    return utime_us >= 0 && utime_us < 10'000'000'000'000'000;
+}
+
+/// No machine has been running for a century; sums and differences of such times cannot overflow.
+bool IsInstant(Instant time) {
+    return time >= Instant(0) && time < std::chrono::hours(24 * 365 * 100);
+}
+
 template <typename Int>
 std::optional<Int> Number(std::string_view text) {
     Int value = 0;
@@ -40,7 +51,7 @@ std::optional<Int> Number(std::string_view text) {
 
 std::optional<Instant> InstantOf(std::string_view text) {
     const auto ns = Number<std::int64_t>(text);
-    return ns ? std::optional(Instant(*ns)) : std::nullopt;
+    return ns && IsInstant(Instant(*ns)) ? std::optional(Instant(*ns)) : std::nullopt;
 }
 
 void TakeProperty(LcmMessageReader& reader, LoggedImage& image) {
@@ -80,11 +91,6 @@ bool IsSound(const hal::CanFrame& frame, std::size_t data_bytes) {
     const bool remote = frame.kind == hal::CanFrameKind::kRemote;
     return HasSoundId(frame) && frame.fd_flags <= 15 && frame.size_bytes <= largest &&
            data_bytes == (remote ? 0 : frame.size_bytes);
-}
-
-/// Before the year 2286: what a candump log has digits for.
-bool IsEpoch(std::int64_t utime_us) {
-    return utime_us >= 0 && utime_us < 10'000'000'000'000'000;
 }
 
 hal::CanFrame TakeCanFrame(LcmMessageReader& reader) {
@@ -142,9 +148,9 @@ Result<LoggedImage> ParseLoggedImage(std::span<const std::uint8_t> message) {
     image.row_stride_bytes = reader.Take<std::int32_t>();
     image.fourcc = reader.Take<std::int32_t>();
     image.data = reader.TakeBytes(reader.Take<std::int32_t>());
-    const bool sound = TakeProperties(reader, image) && IsSide(image.width_px) &&
-                       IsSide(image.height_px) && image.row_stride_bytes >= 0 &&
-                       !image.data.empty();
+    const bool sound = TakeProperties(reader, image) && IsEpoch(image.utime_us) &&
+                       IsSide(image.width_px) && IsSide(image.height_px) &&
+                       image.row_stride_bytes >= 0 && !image.data.empty();
     if (!sound) return Error::kCorrupted;
     return image;
 }
@@ -158,7 +164,7 @@ Result<LoggedCanFrame> ParseLoggedCanFrame(std::span<const std::uint8_t> message
     hal::CanFrame frame = TakeCanFrame(reader);
     const auto data = reader.TakeBytes(reader.Take<std::int8_t>());
     const bool sound = reader.at_end() && IsSound(frame, data.size()) && IsEpoch(utime_us) &&
-                       static_cast<std::int8_t>(frame.kind) <= kLastKind;
+                       IsInstant(received_at) && static_cast<std::int8_t>(frame.kind) <= kLastKind;
     if (!sound) return Error::kCorrupted;
     frame.received_at = received_at;
     frame.epoch = std::chrono::microseconds(utime_us);
@@ -178,7 +184,8 @@ Result<LoggedHitchAngle> ParseLoggedHitchAngle(std::span<const std::uint8_t> mes
     const auto quality = reader.Take<std::int8_t>();
     logged.angle.quality = static_cast<hal::HitchAngleQuality>(quality);
     logged.angle.angle_rad = reader.TakeDouble();
-    const bool sound = reader.at_end() && IsUpTo(quality, kWorstQuality) &&
+    const bool sound = reader.at_end() && IsEpoch(logged.utime_us) &&
+                       IsInstant(logged.angle.received_at) && IsUpTo(quality, kWorstQuality) &&
                        (quality != 0 || std::isfinite(logged.angle.angle_rad));
     if (!sound) return Error::kCorrupted;
     return logged;
@@ -196,7 +203,7 @@ Result<LoggedStatus> ParseLoggedStatus(std::span<const std::uint8_t> message) {
     status.published_at = Instant(reader.Take<std::int64_t>());
     status.spread = Instant(reader.Take<std::int64_t>());
     status.cameras_missing = reader.Take<std::uint32_t>();
-    const bool sound = TakeSeams(reader, status);
+    const bool seams = TakeSeams(reader, status);
     for (int& matches : status.seam_matches) matches = reader.Take<std::int32_t>();
     for (int& features : status.unit_features) features = reader.Take<std::int32_t>();
     status.total_ms = reader.TakeDouble();
@@ -204,7 +211,9 @@ Result<LoggedStatus> ParseLoggedStatus(std::span<const std::uint8_t> message) {
     status.dropped = reader.Take<std::uint64_t>();
     status.articulation_rad = reader.TakeDouble();
     status.articulation_sigma_rad = reader.TakeDouble();
-    if (!reader.at_end() || !sound) return Error::kCorrupted;
+    const bool timed = IsEpoch(logged.utime_us) && IsInstant(status.captured_from) &&
+                       IsInstant(status.published_at);
+    if (!reader.at_end() || !seams || !timed) return Error::kCorrupted;
     return logged;
 }
 
@@ -214,7 +223,8 @@ Result<LoggedClock> ParseLoggedClock(std::span<const std::uint8_t> message) {
     LoggedClock logged;
     logged.utime_us = reader.Take<std::int64_t>();
     logged.monotonic = Instant(reader.Take<std::int64_t>());
-    if (!reader.at_end()) return Error::kCorrupted;
+    const bool timed = IsEpoch(logged.utime_us) && IsInstant(logged.monotonic);
+    if (!reader.at_end() || !timed) return Error::kCorrupted;
     return logged;
 }
 
@@ -228,7 +238,7 @@ Result<LoggedEvent> ParseLoggedEvent(std::span<const std::uint8_t> message) {
     logged.code = reader.Take<std::int16_t>();
     logged.subject = reader.TakeString();
     logged.text = reader.TakeString();
-    if (!reader.at_end()) return Error::kCorrupted;
+    if (!reader.at_end() || !IsEpoch(logged.utime_us)) return Error::kCorrupted;
     return logged;
 }
 
@@ -245,7 +255,8 @@ Result<LoggedRig> ParseLoggedRig(std::span<const std::uint8_t> message) {
     logged.cameras = TakeStrings(reader, cameras);
     logged.camera_channels = TakeStrings(reader, cameras);
     logged.period_ms = reader.TakeDouble();
-    const bool sound = reader.at_end() && std::isfinite(logged.period_ms) && logged.period_ms > 0;
+    const bool sound = reader.at_end() && IsEpoch(logged.utime_us) &&
+                       std::isfinite(logged.period_ms) && logged.period_ms > 0;
     if (!sound) return Error::kCorrupted;
     return logged;
 }
