@@ -218,14 +218,14 @@ CameraFormats Board::formats() const {
 }
 
 hal::Checked<std::unique_ptr<hal::Publisher>> Board::OpenPublisher(const PublishConfig& config) {
-    auto publisher =
-        drivers::LcmPublisher::Create({.url = config.url,
-                                       .panorama_channel = config.panorama_channel,
-                                       .status_channel = config.status_channel,
-                                       .hitch_angle_channel = config.hitch_angle_channel,
-                                       .event_channel = config.event_channel,
-                                       .max_image_bytes = config.max_bytes},
-                                      *clock_);
+    auto publisher = drivers::LcmPublisher::Create(
+        {.url = config.url,
+         .messages = {.panorama_channel = config.panorama_channel,
+                      .status_channel = config.status_channel,
+                      .hitch_angle_channel = config.hitch_angle_channel,
+                      .event_channel = config.event_channel,
+                      .max_image_bytes = config.max_bytes}},
+        *clock_);
     if (!publisher) return publisher.error();
     return std::unique_ptr<hal::Publisher>(std::move(*publisher));
 }

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
+#include "drivers/lcm_encoder.hpp"
 #include "drivers/lcm_handle.hpp"
 #include "drivers/lcm_url.hpp"
-#include "hal/clock.hpp"
 #include "hal/publisher.hpp"
 
 namespace hitchview::drivers {
@@ -17,15 +15,11 @@ inline constexpr const char* kLcmStartChannel = "HITCHVIEW_START";
 
 struct LcmPublisherOptions {
     std::string url = kDefaultLcmUrl;
-    std::string panorama_channel = "PANORAMA";
-    std::string status_channel = "PANORAMA_STATUS";
-    std::string hitch_angle_channel = "HITCH_ANGLE";
-    std::string event_channel = "PANORAMA_EVENT";
-    int max_image_bytes = 1 << 20;  ///< largest JPEG. [1024, 8388608]
+    LcmEncoderOptions messages{};
 };
 
-/// Panorama as bot_core.image_t, status, hitch angle and events as hitchview types, over LCM.
-/// Messages are encoded into one buffer taken at construction; publishing takes no memory.
+/// Sends what an LcmEncoder makes of panoramas, status, hitch angles and events over LCM.
+/// Publishing takes no memory.
 class LcmPublisher final : public hal::Publisher {
  public:
     /// Sends one empty message on kLcmStartChannel. `clock` must outlive the publisher.
@@ -33,23 +27,25 @@ class LcmPublisher final : public hal::Publisher {
                                                               const hal::Clock& clock);
 
  private:
-    LcmPublisher(const LcmPublisherOptions& options, LcmHandle lcm, const hal::Clock& clock);
+    LcmPublisher(std::unique_ptr<LcmEncoder> encoder, LcmHandle lcm)
+        : encoder_(std::move(encoder)), lcm_(std::move(lcm)) {}
 
-    hal::Result<hal::Done> DoPublish(const hal::PanoramaImage& image) override;
-    hal::Result<hal::Done> DoPublish(const hal::PanoramaStatus& status) override;
-    hal::Result<hal::Done> DoPublish(const hal::HitchAngle& angle) override;
-    hal::Result<hal::Done> DoPublish(const hal::Event& event) override;
+    hal::Result<hal::Done> DoPublish(const hal::PanoramaImage& image) override {
+        return Send(encoder_->Encode(image));
+    }
+    hal::Result<hal::Done> DoPublish(const hal::PanoramaStatus& status) override {
+        return Send(encoder_->Encode(status));
+    }
+    hal::Result<hal::Done> DoPublish(const hal::HitchAngle& angle) override {
+        return Send(encoder_->Encode(angle));
+    }
+    hal::Result<hal::Done> DoPublish(const hal::Event& event) override {
+        return Send(encoder_->Encode(event));
+    }
+    hal::Result<hal::Done> Send(const hal::Result<LcmMessage>& message);
 
-    template <typename Message>
-    hal::Result<hal::Done> Send(const std::string& channel, const Message& message,
-                                int (*encode)(void*, int, int, const Message*));
-
-    LcmPublisherOptions options_;
+    std::unique_ptr<LcmEncoder> encoder_;
     LcmHandle lcm_;
-    const hal::Clock& clock_;
-    std::vector<std::uint8_t> buffer_;
-    std::uint32_t hitch_angle_sequence_ = 0;
-    std::uint32_t event_sequence_ = 0;
 };
 
 }  // namespace hitchview::drivers

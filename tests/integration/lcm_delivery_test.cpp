@@ -107,7 +107,7 @@ TEST_F(LcmDeliveryTest, TheLargestLegalImagesAllArrive) {
         GTEST_SKIP() << "net.core.rmem_max is " << allowed_bytes << ", needs " << kNeededBytes;
     }
     const auto jpeg =
-        JpegOfBytes(static_cast<std::size_t>(drivers::LcmPublisherOptions{}.max_image_bytes));
+        JpegOfBytes(static_cast<std::size_t>(drivers::LcmEncoderOptions{}.max_image_bytes));
     Receiver receiver(15);
     for (std::uint32_t i = 0; i < 15; ++i) {
         Publish(i, jpeg);

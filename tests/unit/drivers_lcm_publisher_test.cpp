@@ -29,7 +29,8 @@ class LcmPublisherTest : public testing::Test {
 
     std::unique_ptr<LcmPublisher> Publisher(int max_image_bytes = 4096) const {
         auto publisher = LcmPublisher::Create(
-            {.url = "file://" + log_ + "?mode=w", .max_image_bytes = max_image_bytes}, clock_);
+            {.url = "file://" + log_ + "?mode=w", .messages = {.max_image_bytes = max_image_bytes}},
+            clock_);
         EXPECT_TRUE(publisher) << publisher.error();
         return std::move(publisher.value());
     }
@@ -229,11 +230,11 @@ TEST(LcmPublisherOptionsTest, AMistakeIsNamed) {
         const char* says;
     } cases[] = {
         {{.url = "udpm://1.2.3.4:5"}, "address is '1.2.3.4'"},
-        {{.panorama_channel = ".*"}, "panorama_channel is '.*'"},
-        {{.status_channel = ""}, "status_channel is ''"},
-        {{.hitch_angle_channel = "A B"}, "hitch_angle_channel is 'A B'"},
-        {{.event_channel = "A/B"}, "event_channel is 'A/B'"},
-        {{.max_image_bytes = 100}, "max_image_bytes is 100, must be 1024 to 8388608"},
+        {{.messages = {.panorama_channel = ".*"}}, "panorama_channel is '.*'"},
+        {{.messages = {.status_channel = ""}}, "status_channel is ''"},
+        {{.messages = {.hitch_angle_channel = "A B"}}, "hitch_angle_channel is 'A B'"},
+        {{.messages = {.event_channel = "A/B"}}, "event_channel is 'A/B'"},
+        {{.messages = {.max_image_bytes = 100}}, "max_image_bytes is 100, must be 1024 to 8388608"},
     };
     for (const auto& c : cases) {
         const auto publisher = LcmPublisher::Create(c.options, clock);

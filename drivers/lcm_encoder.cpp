@@ -1,0 +1,193 @@
+#include "drivers/lcm_encoder.hpp"
+
+#include <array>
+#include <charconv>
+#include <limits>
+#include <span>
+#include <string_view>
+
+#include "drivers/lcm_url.hpp"
+#include "lcmtypes/bot_core_image_t.h"
+#include "lcmtypes/hitchview_event_t.h"
+#include "lcmtypes/hitchview_hitch_angle_t.h"
+#include "lcmtypes/hitchview_panorama_status_t.h"
+
+namespace hitchview::drivers {
+namespace {
+
+using hal::Checked;
+using hal::Done;
+using hal::Error;
+using hal::Result;
+
+constexpr int kSmallestImageBytes = 1024;
+constexpr int kLargestImageBytes = 8 << 20;
+static_assert(int(hal::SeamState::kNoOverlap) == HITCHVIEW_PANORAMA_STATUS_T_SEAM_NO_OVERLAP);
+static_assert(int(hal::SeamState::kReacquire) == HITCHVIEW_PANORAMA_STATUS_T_SEAM_REACQUIRE);
+static_assert(int(hal::SeamState::kCoast) == HITCHVIEW_PANORAMA_STATUS_T_SEAM_COAST);
+static_assert(int(hal::SeamState::kLocked) == HITCHVIEW_PANORAMA_STATUS_T_SEAM_LOCKED);
+using Quality = hal::HitchAngleQuality;
+static_assert(int(Quality::kValid) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_VALID);
+static_assert(int(Quality::kNotAvailable) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_NOT_AVAILABLE);
+static_assert(int(Quality::kError) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_ERROR);
+static_assert(int(Quality::kImplausible) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_IMPLAUSIBLE);
+static_assert(int(Quality::kStale) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_STALE);
+static_assert(int(hal::EventCode::kCameraLost) == HITCHVIEW_EVENT_T_CAMERA_LOST);
+static_assert(int(hal::EventCode::kCameraBack) == HITCHVIEW_EVENT_T_CAMERA_BACK);
+
+/// Room for everything in an image message that is not its JPEG.
+constexpr int kEnvelopeBytes = 1024;
+
+/// The properties of a panorama as printable text, in memory of its own.
+class PanoramaMetadata {
+ public:
+    explicit PanoramaMetadata(const hal::PanoramaImage& image) {
+        AddNumber("sequence", image.sequence);
+        AddNumber("captured_from_ns", image.captured_from.count());
+        AddNumber("captured_until_ns", image.captured_until.count());
+        AddMask("cameras_missing", image.cameras_missing);
+        Add("calibration_id", image.calibration_id);
+    }
+
+    PanoramaMetadata(const PanoramaMetadata&) = delete;
+    PanoramaMetadata& operator=(const PanoramaMetadata&) = delete;
+
+    [[nodiscard]] std::span<bot_core_image_metadata_t> entries() { return entries_; }
+
+ private:
+    using Text = std::array<char, 24>;
+
+    void AddNumber(const char* key, std::int64_t value) {
+        Text& text = texts_.at(count_);
+        const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+        Add(key, {text.data(), static_cast<std::size_t>(end - text.data())});
+    }
+
+    void AddMask(const char* key, std::uint32_t mask) {
+        constexpr std::string_view kDigits = "0123456789abcdef";
+        Text& text = texts_.at(count_);
+        text = {'0', 'x'};
+        for (int i = 0; i < 8; ++i) text.at(2 + i) = kDigits[mask >> (28 - 4 * i) & 0xF];
+        Add(key, {text.data(), 10});
+    }
+
+    // The generated type has no const members; encoding only reads them.
+    void Add(const char* key, std::string_view value) {
+        const auto* bytes = reinterpret_cast<const std::uint8_t*>(value.data());
+        entries_.at(count_++) = {.key = const_cast<char*>(key),
+                                 .n = static_cast<std::int32_t>(value.size()),
+                                 .value = const_cast<std::uint8_t*>(bytes)};
+    }
+
+    std::array<bot_core_image_metadata_t, 5> entries_{};
+    std::array<Text, 5> texts_{};
+    std::size_t count_ = 0;
+};
+
+Checked<Done> Check(const LcmEncoderOptions& options) {
+    if (auto name = CheckLcmChannel("panorama_channel", options.panorama_channel); !name) {
+        return name;
+    }
+    if (auto name = CheckLcmChannel("status_channel", options.status_channel); !name) return name;
+    if (auto name = CheckLcmChannel("hitch_angle_channel", options.hitch_angle_channel); !name) {
+        return name;
+    }
+    if (auto name = CheckLcmChannel("event_channel", options.event_channel); !name) return name;
+    const int bytes = options.max_image_bytes;
+    if (bytes >= kSmallestImageBytes && bytes <= kLargestImageBytes) return Done{};
+    return "max_image_bytes is " + std::to_string(bytes) + ", must be " +
+           std::to_string(kSmallestImageBytes) + " to " + std::to_string(kLargestImageBytes);
+}
+
+}  // namespace
+
+Checked<std::unique_ptr<LcmEncoder>> LcmEncoder::Create(const LcmEncoderOptions& options,
+                                                        const hal::Clock& clock) {
+    if (auto checked = Check(options); !checked) return checked.error();
+    return std::unique_ptr<LcmEncoder>(new LcmEncoder(options, clock));
+}
+
+LcmEncoder::LcmEncoder(const LcmEncoderOptions& options, const hal::Clock& clock)
+    : options_(options),
+      clock_(clock),
+      buffer_(static_cast<std::size_t>(options.max_image_bytes) + kEnvelopeBytes) {}
+
+template <typename Message>
+Result<LcmMessage> LcmEncoder::Write(const std::string& channel, const Message& message,
+                                     int (*encode)(void*, int, int, const Message*)) {
+    const int bytes = encode(buffer_.data(), 0, static_cast<int>(buffer_.size()), &message);
+    if (bytes < 0) return Error::kTooLarge;
+    return LcmMessage{.channel = channel.c_str(),
+                      .utime_us = message.utime,
+                      .bytes = {buffer_.data(), static_cast<std::size_t>(bytes)}};
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::PanoramaImage& image) {
+    const auto limit = static_cast<std::size_t>(options_.max_image_bytes);
+    if (image.jpeg.size() > limit) return Error::kTooLarge;
+    PanoramaMetadata metadata(image);
+    const bot_core_image_t message{
+        .utime = clock_.EpochMicroseconds(image.captured_from),
+        .width = image.width_px,
+        .height = image.height_px,
+        .row_stride = 0,
+        .pixelformat = BOT_CORE_IMAGE_T_PIXEL_FORMAT_MJPEG,
+        .size = static_cast<std::int32_t>(image.jpeg.size()),
+        .data = const_cast<std::uint8_t*>(image.jpeg.data()),
+        .nmetadata = static_cast<std::int32_t>(metadata.entries().size()),
+        .metadata = metadata.entries().data(),
+    };
+    return Write(options_.panorama_channel, message, bot_core_image_t_encode);
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::PanoramaStatus& status) {
+    hitchview_panorama_status_t message{
+        .sequence = static_cast<std::int32_t>(status.sequence),
+        .utime = clock_.EpochMicroseconds(status.captured_from),
+        .capture_ns = status.captured_from.count(),
+        .publish_ns = status.published_at.count(),
+        .spread_ns = status.spread.count(),
+        .cameras_missing = static_cast<std::int32_t>(status.cameras_missing),
+        .seam_state = {},
+        .seam_matches = {status.seam_matches[0], status.seam_matches[1]},
+        .unit_features = {status.unit_features[0], status.unit_features[1]},
+        .total_ms = status.total_ms,
+        .deadline_misses = static_cast<std::int64_t>(status.deadline_misses),
+        .dropped = static_cast<std::int64_t>(status.dropped),
+        .articulation_rad = status.articulation_rad,
+        .articulation_sigma_rad = status.articulation_sigma_rad,
+    };
+    message.seam_state[0] = static_cast<std::int8_t>(status.seams[0]);
+    message.seam_state[1] = static_cast<std::int8_t>(status.seams[1]);
+    return Write(options_.status_channel, message, hitchview_panorama_status_t_encode);
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::HitchAngle& angle) {
+    // A reader who ignores the quality must not find a plausible angle.
+    constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+    const bool valid = angle.quality == hal::HitchAngleQuality::kValid;
+    const hitchview_hitch_angle_t message{
+        .sequence = static_cast<std::int32_t>(hitch_angle_sequence_++),
+        .utime = clock_.EpochMicroseconds(angle.received_at),
+        .capture_ns = angle.received_at.count(),
+        .valid = valid,
+        .quality = static_cast<std::int8_t>(angle.quality),
+        .angle_rad = valid ? angle.angle_rad : kNotANumber,
+    };
+    return Write(options_.hitch_angle_channel, message, hitchview_hitch_angle_t_encode);
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::Event& event) {
+    // The generated type has no const members; encoding only reads them.
+    const hitchview_event_t message{
+        .sequence = static_cast<std::int32_t>(event_sequence_++),
+        .utime = clock_.EpochMicroseconds(event.when),
+        .monotonic_ns = event.when.count(),
+        .code = static_cast<std::int16_t>(event.code),
+        .subject = const_cast<char*>(event.subject.c_str()),
+        .text = const_cast<char*>(event.text.c_str()),
+    };
+    return Write(options_.event_channel, message, hitchview_event_t_encode);
+}
+
+}  // namespace hitchview::drivers

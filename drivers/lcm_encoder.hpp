@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hal/clock.hpp"
+#include "hal/publisher.hpp"
+
+namespace hitchview::drivers {
+
+struct LcmEncoderOptions {
+    std::string panorama_channel = "PANORAMA";
+    std::string status_channel = "PANORAMA_STATUS";
+    std::string hitch_angle_channel = "HITCH_ANGLE";
+    std::string event_channel = "PANORAMA_EVENT";
+    int max_image_bytes = 1 << 20;  ///< largest JPEG. [1024, 8388608]
+};
+
+/// A message as LCM carries it; borrowed from the encoder until its next call.
+struct LcmMessage {
+    const char* channel = "";
+    std::int64_t utime_us = 0;  ///< the message's own, since the epoch
+    std::span<const std::uint8_t> bytes{};
+};
+
+/// What is published as messages: the panorama as bot_core.image_t, status, hitch angle and events
+/// as hitchview types. Encodes into one buffer taken at construction and takes no memory. Hitch
+/// angles and events are numbered in the order in which they come. Thread: one.
+class LcmEncoder {
+ public:
+    /// `clock` must outlive the encoder. The error names what is outside its range.
+    static hal::Checked<std::unique_ptr<LcmEncoder>> Create(const LcmEncoderOptions& options,
+                                                            const hal::Clock& clock);
+
+    /// kTooLarge: it does not fit max_image_bytes.
+    hal::Result<LcmMessage> Encode(const hal::PanoramaImage& image);
+    hal::Result<LcmMessage> Encode(const hal::PanoramaStatus& status);
+    hal::Result<LcmMessage> Encode(const hal::HitchAngle& angle);
+    hal::Result<LcmMessage> Encode(const hal::Event& event);
+
+ private:
+    LcmEncoder(const LcmEncoderOptions& options, const hal::Clock& clock);
+
+    template <typename Message>
+    hal::Result<LcmMessage> Write(const std::string& channel, const Message& message,
+                                  int (*encode)(void*, int, int, const Message*));
+
+    LcmEncoderOptions options_;
+    const hal::Clock& clock_;
+    std::vector<std::uint8_t> buffer_;
+    std::uint32_t hitch_angle_sequence_ = 0;
+    std::uint32_t event_sequence_ = 0;
+};
+
+}  // namespace hitchview::drivers
