@@ -7,7 +7,6 @@
 #include "app/log_progress.hpp"
 #include "app/log_repair.hpp"
 #include "app/log_report.hpp"
-#include "app/report.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -45,14 +44,14 @@ int Repair(LogRecording& recording, const CheckOptions& options) {
     const auto repaired = RepairLog(recording, options.repair);
     if (!repaired) return Fail(repaired.error(), kMachineFailed);
     const drivers::LcmLogDamage damage = recording.damage();
-    std::printf(
-        "\n%s: %llu events, %llu bytes; left out %llu bytes in %llu places, at least %llu "
-        "events\n",
-        options.repair.c_str(), static_cast<unsigned long long>(repaired.value().events),
-        static_cast<unsigned long long>(repaired.value().bytes),
-        static_cast<unsigned long long>(damage.skipped_bytes),
-        static_cast<unsigned long long>(damage.places),
-        static_cast<unsigned long long>(damage.lost_events));
+    std::fprintf(options.json ? stderr : stdout,
+                 "\n%s: %llu events, %llu bytes; left out %llu bytes in %llu places, at least %llu "
+                 "events\n",
+                 options.repair.c_str(), static_cast<unsigned long long>(repaired.value().events),
+                 static_cast<unsigned long long>(repaired.value().bytes),
+                 static_cast<unsigned long long>(damage.skipped_bytes),
+                 static_cast<unsigned long long>(damage.places),
+                 static_cast<unsigned long long>(damage.lost_events));
     return 0;
 }
 
@@ -65,11 +64,9 @@ int CheckVerb(const CheckOptions& options, const std::atomic<bool>& stop) {
     const auto figures = Measure(recording);
     if (!figures) return Fail(figures.error(), kUnreadable);
     const LogVerdict verdict = Judge(figures.value());
-    std::fputs(LogTable(figures.value(), verdict).c_str(), stdout);
-    if (!options.json.empty()) {
-        const std::string refused = WriteJson(LogReport(figures.value(), verdict), options.json);
-        if (!refused.empty()) return Fail(refused, kMachineFailed);
-    }
+    const std::string answer = options.json ? LogReport(figures.value(), verdict).dump(2) + '\n'
+                                            : LogTable(figures.value(), verdict);
+    std::fputs(answer.c_str(), stdout);
     const int repaired = options.repair.empty() ? 0 : Repair(recording, options);
     if (repaired != 0) return repaired;
     return verdict.good() ? 0 : kBad;

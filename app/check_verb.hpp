@@ -8,12 +8,13 @@ namespace hitchview::app {
 
 struct CheckOptions {
     std::vector<std::filesystem::path> logs{};  ///< files and folders of segments, in order
-    std::filesystem::path json{};               ///< file for all figures; empty: none
+    bool json = false;                          ///< all figures as JSON in place of the table
     std::filesystem::path repair{};             ///< log for all whole events; empty: none
 };
 
-/// Tells how good a recording is and prints a table. Returns the exit code: 0 good, 1 bad, 2 it
-/// cannot be read, the repaired log exists already or `stop` was set, 3 a file cannot be written.
+/// Tells how good a recording is: a table on stdout, or one JSON document and nothing else. Returns
+/// the exit code: 0 good, 1 bad, 2 it cannot be read, the repaired log exists already or `stop` was
+/// set, 3 a file cannot be written.
 int CheckVerb(const CheckOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace hitchview::app

@@ -16,10 +16,10 @@ CLI::App& AddCheck(CLI::App& app, CheckOptions& options) {
         "check",
         "Tell whether a recording is good: what is missing, damaged or out of step.\n"
         "Exit code 0: good, 1: bad, 2: not readable.\n"
-        "Example: hitchview check /var/lib/hitchview/recordings --json check.json\n"
+        "Example: hitchview check /var/lib/hitchview/recordings --json\n"
         "Example: hitchview check torn.lcm --repair whole.lcm");
     AddLogs(verb, options.logs);
-    verb.add_option("--json", options.json, "file for all figures");
+    verb.add_flag("--json", options.json, "print all figures as JSON instead of the table");
     verb.add_option("--repair", options.repair,
                     "new log for every whole event, numbered anew; says what was left out");
     return verb;

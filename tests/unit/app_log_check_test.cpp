@@ -3,7 +3,6 @@
 #include <lcm/lcm.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -259,18 +258,28 @@ TEST_F(LogCheckTest, TheVerbTellsByItsExitCode) {
         MessageLog log(file_);
         WriteThreeCameras(log);
     }
-    const std::string json = folder_ / "check.json";
-    EXPECT_EQ(CheckVerb({.logs = {file_}, .json = json}, kGoOn), 0);
-    std::ifstream in(json);
-    const auto report = nlohmann::json::parse(in);
-    EXPECT_EQ(report["verdict"], "good");
-    EXPECT_EQ(report["cameras"]["CAM_B"]["lost"], 3);
-    EXPECT_TRUE(report["hitch_angle"]["least_rad"].is_null());
-
+    EXPECT_EQ(CheckVerb({.logs = {file_}}, kGoOn), 0);
     std::filesystem::resize_file(file_, std::filesystem::file_size(file_) - 1);
     EXPECT_EQ(CheckVerb({.logs = {file_}}, kGoOn), 1);
     EXPECT_EQ(CheckVerb({.logs = {folder_ / "absent"}}, kGoOn), 2);
     EXPECT_EQ(CheckVerb({.logs = {folder_.Write("text.lcm", "not a log")}}, kGoOn), 2);
+}
+
+TEST_F(LogCheckTest, AsJsonTheAnswerIsOneDocumentAlone) {
+    {
+        MessageLog log(file_);
+        WriteThreeCameras(log);
+    }
+    testing::internal::CaptureStdout();
+    const int code =
+        CheckVerb({.logs = {file_}, .json = true, .repair = folder_ / "repaired.lcm"}, kGoOn);
+    const std::string text = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(code, 0);
+    const auto report = nlohmann::json::parse(text, nullptr, false);
+    ASSERT_TRUE(report.is_object()) << text;
+    EXPECT_EQ(report["verdict"], "good");
+    EXPECT_EQ(report["cameras"]["CAM_B"]["lost"], 3);
+    EXPECT_TRUE(report["hitch_angle"]["least_rad"].is_null());
 }
 
 }  // namespace
