@@ -5,7 +5,10 @@
 
 #include "app/camera_ahead.hpp"
 #include "app/live_camera_options.hpp"
+#include "app/log_replay.hpp"
 #include "drivers/candump_can_bus.hpp"
+#include "drivers/lcm_log_camera.hpp"
+#include "drivers/lcm_log_can_bus.hpp"
 #include "drivers/lcm_publisher.hpp"
 #include "drivers/replay_camera.hpp"
 #include "drivers/simulated_camera.hpp"
@@ -138,6 +141,10 @@ hal::Checked<hal::Done> Board::OpenSimulation(const RigConfig& config) {
 hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit unit,
                                           const CameraConfig& camera, int slots) {
     if (camera.IsLive()) return OpenLiveCamera(config, unit, camera, slots);
+    if (camera.source == CameraConfig::Source::kLog) {
+        OpenLogCamera(config, unit, camera, slots);
+        return hal::Done{};
+    }
     if (camera.source == CameraConfig::Source::kSimulated) {
         const int index = SimulatedIndex(*simulation_, unit, camera.name);
         if (index < 0) {
@@ -172,7 +179,28 @@ hal::Checked<hal::Done> Board::OpenLiveCamera(const RigConfig& config, algo::Uni
     return hal::Done{};
 }
 
+void Board::OpenLogCamera(const RigConfig& config, algo::Unit unit, const CameraConfig& camera,
+                          int slots) {
+    auto logged = std::make_unique<drivers::LcmLogCamera>(drivers::LcmLogCameraOptions{
+        .files = config.log.recordings[camera.log.recording],
+        .kind = {.format = camera.log.format, .compressed = camera.log.compressed},
+        .slots = slots});
+    drivers::LcmLogCamera* const source = logged.get();
+    auto ahead = std::make_unique<CameraAhead>(std::move(logged), camera.name);
+    log_cameras_.push_back({.config = camera.log,
+                            .name = camera.name,
+                            .source = source,
+                            .camera = ahead.get(),
+                            .unit = unit,
+                            .index_in_unit = cameras_[unit].size()});
+    cameras_[unit].push_back(std::move(ahead));
+}
+
 void Board::StartSets(const RigConfig& config) {
+    if (!log_cameras_.empty()) {
+        sets_ = std::make_unique<LogReplay>(config, period_, log_cameras_, log_can_bus_);
+        return;
+    }
     if (live_cameras_.empty()) {
         sets_ = std::make_unique<RecordedFrameSynchronizer>(cameras_);
         return;
@@ -190,6 +218,12 @@ hal::Checked<hal::Done> Board::OpenCanBus(const RigConfig& config) {
         return hal::Done{};
     }
     if (config.can->source == CanConfig::Source::kSocketCan) return OpenSocketCan(config);
+    if (config.can->source == CanConfig::Source::kLog) {
+        auto logged = std::make_unique<drivers::LcmLogCanBus>();
+        log_can_bus_ = logged.get();
+        can_bus_ = std::move(logged);
+        return hal::Done{};
+    }
     auto bus = drivers::CandumpCanBus::Open(config.can->candump.string(), hal::Instant{0});
     if (!bus) return bus.error();
     can_bus_ = std::move(*bus);

@@ -14,10 +14,13 @@
 #include "hal/publisher.hpp"
 
 namespace hitchview::drivers {
+class LcmLogCanBus;
 class SimulatedRig;
-}
+}  // namespace hitchview::drivers
 
 namespace hitchview::app {
+
+struct LogCamera;
 
 /// The hardware of one rig, opened: real, recorded or simulated. Everything else of the program
 /// sees interfaces only.
@@ -55,6 +58,8 @@ class Board {
                                        const CameraConfig& camera, int slots);
     hal::Checked<hal::Done> OpenLiveCamera(const RigConfig& config, algo::Unit unit,
                                            const CameraConfig& camera, int slots);
+    void OpenLogCamera(const RigConfig& config, algo::Unit unit, const CameraConfig& camera,
+                       int slots);
     void StartSets(const RigConfig& config);
     hal::Checked<hal::Done> OpenCanBus(const RigConfig& config);
     hal::Checked<hal::Done> OpenSocketCan(const RigConfig& config);
@@ -63,7 +68,9 @@ class Board {
     std::unique_ptr<drivers::SimulatedRig> simulation_;
     Cameras cameras_;
     std::vector<LiveCamera> live_cameras_;
+    std::vector<LogCamera> log_cameras_;
     std::unique_ptr<hal::CanBus> can_bus_;
+    drivers::LcmLogCanBus* log_can_bus_ = nullptr;  ///< the same, of a recording
     bool is_can_live_ = false;
     hal::Instant period_{};
     EventQueue events_;

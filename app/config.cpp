@@ -158,25 +158,40 @@ std::string CalibrationProblem(const calib::RigCalibration& calibration, const s
            algo::ToString(unit) + " for this rig";
 }
 
+hal::Checked<RigConfig> ReadWhole(YamlMap root, const calib::YamlComplaints& complaints,
+                                  const std::filesystem::path& folder) {
+    ConfigContext context{.folder = folder};
+    RigConfig config = ReadRig(root, context);
+    if (!complaints.empty()) return complaints.Text();
+    return config;
+}
+
 }  // namespace
 
 hal::Checked<RigConfig> LoadRigConfig(const std::filesystem::path& file) {
     calib::YamlComplaints complaints(file.string());
-    YamlMap root = calib::LoadYaml(file, complaints);
-    ConfigContext context{.folder = file.parent_path()};
-    RigConfig config = ReadRig(root, context);
-    if (!complaints.empty()) return complaints.Text();
-    config.file = file;
+    auto config = ReadWhole(calib::LoadYaml(file, complaints), complaints, file.parent_path());
+    if (config) config->file = file;
+    return config;
+}
+
+hal::Checked<RigConfig> ParseRigConfig(const NamedText& rig, const std::filesystem::path& folder) {
+    calib::YamlComplaints complaints(rig.name);
+    auto config = ReadWhole(calib::ParseYaml(rig.text, complaints), complaints, folder);
+    if (config) config->file = rig.name;
     return config;
 }
 
 hal::Checked<calib::RigCalibration> LoadCalibrationFor(const RigConfig& config) {
-    calib::LoadedCalibration loaded = calib::LoadCalibration(config.calibration);
+    const auto& text = config.calibration_text;
+    calib::LoadedCalibration loaded = text ? calib::ParseCalibration(text->text, text->name)
+                                           : calib::LoadCalibration(config.calibration);
     if (!loaded.calibration) return std::move(loaded.error);
     for (const algo::Unit unit : algo::kUnits) {
         for (const CameraConfig& camera : config.units[unit].cameras) {
             const std::string problem = CalibrationProblem(*loaded.calibration, camera.name, unit);
-            if (!problem.empty()) return config.calibration.string() + ": " + problem;
+            if (!problem.empty())
+                return (text ? text->name : config.calibration.string()) + ": " + problem;
         }
     }
     return std::move(*loaded.calibration);

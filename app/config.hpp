@@ -10,6 +10,7 @@
 #include "algo/unit.hpp"
 #include "app/thread_schedule.hpp"
 #include "calib/rig_calibration.hpp"
+#include "hal/frame.hpp"
 #include "hal/result.hpp"
 
 /// What rig.yaml says. docs/rig.example.yaml shows every key; ranges stand in square brackets.
@@ -63,12 +64,32 @@ struct LiveCameraConfig {
     std::vector<ControlConfig> controls{};  ///< in the order of the file
 };
 
+/// A camera of a recording: where its frames are, and what they are. No rig file says it, the
+/// recording does.
+struct LogCameraConfig {
+    std::size_t recording = 0;  ///< of LogConfig::recordings
+    std::string channel{};
+    hal::FrameFormat format{};
+    bool compressed = false;  ///< JPEG; `format` is what it becomes
+};
+
+/// Recordings in place of a vehicle.
+struct LogConfig {
+    std::vector<std::vector<std::filesystem::path>> recordings{};  ///< segments of each, in order
+    std::int64_t from_us = 0;             ///< since the epoch; events before are passed over
+    std::optional<std::int64_t> to_us{};  ///< this event and later ones too
+    /// All cameras' frames carry the moment of their capture; otherwise the time of their messages
+    /// is taken for it.
+    bool stamped = true;
+};
+
 struct CameraConfig {
-    enum class Source { kReplay, kSimulated, kV4l2, kLibcamera };
+    enum class Source { kReplay, kSimulated, kV4l2, kLibcamera, kLog };
 
     std::string name{};  ///< letters, digits and _; unique in the rig
     Source source = Source::kReplay;
     std::filesystem::path replay{};  ///< video file, image sequence or LCM log; kReplay only
+    LogCameraConfig log{};           ///< kLog only
     LiveCameraConfig live{};         ///< kV4l2 and kLibcamera only
 
     [[nodiscard]] bool IsLive() const {
@@ -178,7 +199,7 @@ struct HitchAngleSignal {
 };
 
 struct CanConfig {
-    enum class Source { kSimulated, kCandump, kSocketCan };
+    enum class Source { kSimulated, kCandump, kSocketCan, kLog };
 
     Source source = Source::kSimulated;
     std::filesystem::path candump{};     ///< text log as `candump -L` writes it; kCandump only
@@ -208,10 +229,17 @@ struct RealTimeConfig {
     LockMemory lock_memory = LockMemory::kTry;
 };
 
+/// What is in a file that came in another way.
+struct NamedText {
+    std::string name{};  ///< what messages call the file
+    std::string text{};
+};
+
 struct RigConfig {
     std::filesystem::path file{};  ///< where it was read from
     CanvasConfig canvas{};
-    std::filesystem::path calibration{};  ///< empty for a plane
+    std::filesystem::path calibration{};          ///< empty for a plane
+    std::optional<NamedText> calibration_text{};  ///< in place of what is in that file
     algo::PerUnit<UnitConfig> units{};
     SimulationConfig simulation{};
     StabilizationConfig stabilization{};
@@ -226,6 +254,7 @@ struct RigConfig {
     std::optional<std::chrono::nanoseconds> set_tolerance{};
     std::optional<CanConfig> can{};
     PublishConfig publish{};
+    LogConfig log{};  ///< of cameras and a CAN bus whose source is kLog
 
     /// Its cameras run at their own pace: all of a rig's do, or none.
     [[nodiscard]] bool IsLive() const {
@@ -240,6 +269,8 @@ struct RigConfig {
 /// A DBC file that it names is read and checked with it; whether the other files exist is not
 /// looked at. Throws nothing.
 hal::Checked<RigConfig> LoadRigConfig(const std::filesystem::path& file);
+/// The same of a rig file's content. Relative paths stand relative to `folder`.
+hal::Checked<RigConfig> ParseRigConfig(const NamedText& rig, const std::filesystem::path& folder);
 
 /// Reads the calibration of a cylinder rig and checks that it has every camera of the rig, on the
 /// same unit. It may have more cameras than the rig.

@@ -73,6 +73,11 @@ void LogRecording::Rewind() {
     failure_.clear();
 }
 
+void LogRecording::SeekToTime(std::int64_t utime_us) {
+    Rewind();
+    while (OpenNext() && !reader_->SeekToTime(utime_us).ok()) CloseSegment();
+}
+
 LcmLogDamage LogRecording::damage() const {
     return reader_ == nullptr ? closed_damage_ : Sum(closed_damage_, reader_->damage());
 }

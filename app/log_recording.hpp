@@ -29,11 +29,16 @@ class LogRecording {
     hal::Result<drivers::LcmLogEvent> Next();
     /// The next event is the first again, and nothing is damaged yet.
     void Rewind();
+    /// Rewinds, and the next event will be the first with a time of `utime_us` or later. A
+    /// recording whose events are all earlier has no further event.
+    void SeekToTime(std::int64_t utime_us);
 
     [[nodiscard]] const std::string& failure() const { return failure_; }
     /// Of all segments so far.
     [[nodiscard]] drivers::LcmLogDamage damage() const;
     [[nodiscard]] std::size_t segments() const { return files_.size(); }
+    /// Of the newest event.
+    [[nodiscard]] std::size_t file() const { return next_file_ - 1; }
     [[nodiscard]] std::uint64_t size_bytes() const { return size_bytes_; }
     /// Of size_bytes().
     [[nodiscard]] std::uint64_t position_bytes() const;

@@ -27,7 +27,6 @@ void Stop(int) {
 
 void AddRunOptions(CLI::App& verb, ReplayOptions& options) {
     verb.add_option("--rig", options.rig, "rig file (docs/rig.example.yaml shows every key)")
-        ->required()
         ->check(CLI::ExistingFile);
     verb.add_option("--out", options.run.out, "folder for report.json and videos");
     verb.add_option("--frames", options.run.frames, "stop after so many frame sets")
@@ -76,8 +75,15 @@ CLI::App& AddReplay(CLI::App& app, ReplayOptions& options) {
     CLI::App& verb = *app.add_subcommand(
         "replay",
         "Make panoramas from recordings, as fast as they can be read.\n"
-        "Example: hitchview replay --rig drive/rig.yaml --out out --write-video");
+        "Example: hitchview replay --rig drive/rig.yaml --out out --write-video\n"
+        "Example: hitchview replay --log recordings --from 60 --to 90 --out out --write-video");
     AddRunOptions(verb, options);
+    verb.add_option("--log", options.logs,
+                    "LCM logs, or folders of their segments, in their order: the rig is the "
+                    "recorded one, or that of --rig");
+    verb.add_option("--from", options.from,
+                    "with --log: begin there; seconds since its start, or 2026-11-22T19:51:39.5Z");
+    verb.add_option("--to", options.to, "with --log: end there");
     verb.add_flag("--realtime", options.run.realtime,
                   "one frame set per period; late ones are dropped");
     verb.add_flag("--offline", options.run.offline,

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "app/log_rig.hpp"
 #include "app/program.hpp"
 #include "app/report.hpp"
 
@@ -64,6 +65,9 @@ std::string Contradiction(const ReplayOptions& options) {
     if (options.run.offline && options.run.lookahead_frames)
         return "--offline sees all frames ahead: not with --lookahead";
     if (options.coupling && !options.run.offline) return "--coupling needs --offline";
+    if (options.rig.empty() && options.logs.empty()) return "--rig or --log is needed";
+    const bool part = !options.from.empty() || !options.to.empty();
+    if (part && options.logs.empty()) return "--from and --to need --log";
     return "";
 }
 
@@ -71,7 +75,12 @@ std::string Contradiction(const ReplayOptions& options) {
 
 int ReplayVerb(const ReplayOptions& options, const std::atomic<bool>& stop) {
     if (const std::string why = Contradiction(options); !why.empty()) return Fail(kWrongUse, why);
-    const auto config = LoadRigConfig(options.rig);
+    const auto config = options.logs.empty() ? LoadRigConfig(options.rig)
+                                             : LoadLogRig({.logs = options.logs,
+                                                           .rig = options.rig,
+                                                           .from = options.from,
+                                                           .to = options.to},
+                                                          stop);
     if (!config) return Fail(kWrongUse, config.error());
     RunOptions run = options.run;
     if (options.coupling == "literal") run.coupling = algo::Coupling::kLiteral;

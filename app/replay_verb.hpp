@@ -6,6 +6,9 @@ namespace hitchview::app {
 
 struct ReplayOptions {
     std::filesystem::path rig{};
+    std::vector<std::filesystem::path> logs{};  ///< recordings to be replayed; `rig` may be empty
+    std::string from{};                         ///< see LogRigOptions
+    std::string to{};
     RunOptions run{};
     std::optional<std::string> coupling{};  ///< literal or corrected; offline only
     bool metrics = false;                   ///< track the written views again and measure them

@@ -7,6 +7,7 @@
 #include "algo/unified_vertex_motion.hpp"
 #include "app/board.hpp"
 #include "app/first_sets.hpp"
+#include "app/log_rig.hpp"
 #include "app/panorama_loop.hpp"
 #include "app/real_time.hpp"
 #include "app/run_outputs.hpp"
@@ -146,8 +147,11 @@ void ArticulationSummary::Add(const algo::Articulation& articulation) {
     ++frames;
 }
 
-hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& options,
+hal::Checked<RunSummary> RunRig(const RigConfig& rig_config, const RunOptions& options,
                                 const std::atomic<bool>& stop, const ShownHook& hook) {
+    const auto resolved = ResolveLogs(rig_config, stop);
+    if (!resolved) return resolved.error();
+    const RigConfig& config = resolved.value();
     if (config.IsLive() && !options.realtime)
         return config.file.string() +
                ": its cameras are live: use run; the other verbs need recordings";

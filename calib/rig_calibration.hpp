@@ -61,6 +61,8 @@ Eigen::Quaterniond RotationFromRpy(const Eigen::Vector3d& rpy_deg);
 /// Strict: docs/conventions.md describes the format. A file that carries an `id` must match it.
 /// Throws nothing.
 LoadedCalibration LoadCalibration(const std::filesystem::path& file);
+/// The same of a file's content. `name`: what complaints call the file.
+LoadedCalibration ParseCalibration(const std::string& text, const std::string& name);
 
 /// The file's text, in canonical form.
 std::string ToYaml(const RigCalibration& calibration);

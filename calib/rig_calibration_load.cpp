@@ -139,11 +139,7 @@ void CheckId(const YamlValue& value, const std::string& id) {
     if (given != id) value.Refuse(id + " for this content; without the key nothing is compared");
 }
 
-}  // namespace
-
-LoadedCalibration LoadCalibration(const std::filesystem::path& file) {
-    YamlComplaints complaints(file.string());
-    YamlMap root = LoadYaml(file, complaints);
+LoadedCalibration ReadWhole(YamlMap root, const YamlComplaints& complaints) {
     RigCalibration calibration = ReadCalibration(root);
     const YamlValue cameras = root["cameras"];
     const YamlValue id = root["id"];
@@ -153,6 +149,18 @@ LoadedCalibration LoadCalibration(const std::filesystem::path& file) {
     root.Finish();
     if (!complaints.empty()) return {std::nullopt, complaints.Text()};
     return {std::move(calibration), ""};
+}
+
+}  // namespace
+
+LoadedCalibration LoadCalibration(const std::filesystem::path& file) {
+    YamlComplaints complaints(file.string());
+    return ReadWhole(LoadYaml(file, complaints), complaints);
+}
+
+LoadedCalibration ParseCalibration(const std::string& text, const std::string& name) {
+    YamlComplaints complaints(name);
+    return ReadWhole(ParseYaml(text, complaints), complaints);
 }
 
 }  // namespace hitchview::calib

@@ -65,6 +65,10 @@ YamlDocument ReadYamlDocument(const std::filesystem::path& file) {
     std::string text(kMaxFileBytes + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
+    return ParseYamlDocument(text);
+}
+
+YamlDocument ParseYamlDocument(const std::string& text) {
     if (text.size() > kMaxFileBytes) {
         return Complaint(0, "the file is too long, must be at most 1 MiB");
     }

@@ -17,5 +17,7 @@ struct YamlDocument {
 
 /// At most 1 MiB. The only place where the YAML library may throw; nothing leaves it.
 YamlDocument ReadYamlDocument(const std::filesystem::path& file);
+/// The same of a file's content.
+YamlDocument ParseYamlDocument(const std::string& text);
 
 }  // namespace hitchview::calib

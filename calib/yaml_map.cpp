@@ -215,14 +215,25 @@ void YamlMap::Finish() const {
     }
 }
 
-YamlMap LoadYaml(const std::filesystem::path& file, YamlComplaints& complaints) {
-    const YamlDocument document = ReadYamlDocument(file);
+namespace {
+
+YamlMap RootOf(const YamlDocument& document, YamlComplaints& complaints) {
     if (!document.root) {
         complaints.Add(document.line, document.complaint);
     } else if (!document.root->IsMap()) {
         complaints.Add(1, "the file is " + Shown(*document.root) + ", must be a map");
     }
     return {document.root, YamlPlace{1, "", complaints.empty() ? &complaints : nullptr}};
+}
+
+}  // namespace
+
+YamlMap LoadYaml(const std::filesystem::path& file, YamlComplaints& complaints) {
+    return RootOf(ReadYamlDocument(file), complaints);
+}
+
+YamlMap ParseYaml(const std::string& text, YamlComplaints& complaints) {
+    return RootOf(ParseYamlDocument(text), complaints);
 }
 
 std::string ExactText(double number) {

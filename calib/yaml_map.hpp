@@ -136,6 +136,8 @@ class YamlMap {
 
 /// The root of the one document in `file` (at most 1 MiB); what is wrong goes into `complaints`.
 YamlMap LoadYaml(const std::filesystem::path& file, YamlComplaints& complaints);
+/// The same of a file's content.
+YamlMap ParseYaml(const std::string& text, YamlComplaints& complaints);
 
 /// Shortest text that reads back as exactly `number`.
 std::string ExactText(double number);

@@ -91,7 +91,7 @@ void V4l2Camera::Settle(const V4l2Granted& granted) {
                compressed ? hal::Range::kFull : layout.range};
     if (!compressed) return;
     pool_ = std::make_unique<hal::FramePool>(format_, options_.buffers);
-    decoder_ = std::make_unique<V4l2JpegDecoder>(format_);
+    decoder_ = std::make_unique<FrameJpegDecoder>(format_);
 }
 
 void V4l2Camera::NoteFacts() {

@@ -5,7 +5,7 @@
 
 #include "drivers/frame_accounting.hpp"
 #include "drivers/v4l2_buffers.hpp"
-#include "drivers/v4l2_jpeg_decoder.hpp"
+#include "drivers/frame_jpeg_decoder.hpp"
 #include "drivers/v4l2_negotiation.hpp"
 #include "drivers/v4l2_stamps.hpp"
 #include "hal/camera.hpp"
@@ -105,7 +105,7 @@ class V4l2Camera final : public hal::Camera {
     V4l2CameraFacts facts_;
     hal::FrameFormat format_;
     std::unique_ptr<hal::FramePool> pool_;  ///< of decoded frames
-    std::unique_ptr<V4l2JpegDecoder> decoder_;
+    std::unique_ptr<FrameJpegDecoder> decoder_;
 
     bool streaming_ = false;
     bool drained_ = false;    ///< of what came before the first call of WaitFrame

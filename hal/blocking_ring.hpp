@@ -26,6 +26,15 @@ class BlockingRing {
         return true;
     }
 
+    /// Without waiting. False, and the item is gone, while full and once closed.
+    bool TryAppend(T item) {
+        const std::lock_guard lock(mutex_);
+        if (closed_ || count_ == kCapacity) return false;
+        items_[(first_ + count_++) % kCapacity] = std::move(item);
+        changed_.notify_all();
+        return true;
+    }
+
     /// Waits while empty. Empty when closed and all was taken.
     std::optional<T> Take() {
         std::unique_lock lock(mutex_);

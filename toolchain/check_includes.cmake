@@ -24,13 +24,13 @@ set(drivers_in_app/camera_probe.cpp "^drivers/v4l2_(camera|probe)\\.hpp$")
 set(drivers_in_app/live_camera_options.hpp "^drivers/(libcamera_camera|v4l2_negotiation)\\.hpp$")
 set(drivers_in_app/view_verb.cpp "^drivers/lcm_subscriber\\.hpp$")
 set(drivers_in_app/demo_verb.cpp "^drivers/(simulated_[a-z_]+|steady_clock)\\.hpp$")
-set(drivers_in_app/log_files "^drivers/lcm_log_[a-z]+\\.hpp$")
+set(drivers_in_app/log_files "^drivers/lcm_log_[a-z_]+\\.hpp$")
 set(drivers_in_app/evaluation.cpp "^drivers/replay_camera\\.hpp$")
 
 # 'Logged only': what these files reach, over any number of includes, has none of these headers.
 set(estimating_files "^(algo/|app/(pipeline|frame_set|rig_geometry))")
 set(telemetry_headers
-    "^(hal/(hitch_angle|[a-z_]*can_bus)|drivers/(socketcan|candump|simulated_can)_[a-z_]+|app/(can|candump|dbc|hitch_angle|telemetry)_[a-z_]+)\\.hpp$")
+    "^(hal/(hitch_angle|[a-z_]*can_bus)|drivers/(socketcan|candump|simulated_can|lcm_log_can)_[a-z_]+|app/(can|candump|dbc|hitch_angle|telemetry)_[a-z_]+)\\.hpp$")
 
 set(complaints "")
 

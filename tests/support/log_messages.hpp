@@ -32,6 +32,13 @@ struct LoggedPicture {
     std::string range = "full";
 };
 
+/// What a log says of its rig.
+struct RigTexts {
+    std::string rig = "schema: 1\n";
+    std::string calibration = "schema: 1\n";
+    std::string calibration_id = "schema: 1\n";
+};
+
 /// Writes a log of messages as Hitchview records them, encoded by the code that lcm-gen makes. The
 /// wall clock is kEpoch_ns ahead of the monotonic one, unless `epoch_ns` is changed.
 class MessageLog {
@@ -47,17 +54,16 @@ class MessageLog {
         return (epoch_ns + monotonic_ns) / 1000;
     }
 
-    void Rig(std::vector<std::string> cameras, std::vector<std::string> channels,
-             double period_ms) {
+    void Rig(std::vector<std::string> cameras, std::vector<std::string> channels, double period_ms,
+             RigTexts texts = {}) {
         std::vector<char*> names;
         std::vector<char*> on;
         for (std::string& camera : cameras) names.push_back(camera.data());
         for (std::string& channel : channels) on.push_back(channel.data());
-        std::string text = "schema: 1\n";
         const hitchview_rig_t message{.utime = Utime_us(0),
-                                      .rig_yaml = text.data(),
-                                      .calibration_yaml = text.data(),
-                                      .calibration_id = text.data(),
+                                      .rig_yaml = texts.rig.data(),
+                                      .calibration_yaml = texts.calibration.data(),
+                                      .calibration_id = texts.calibration_id.data(),
                                       .ncameras = static_cast<std::int32_t>(names.size()),
                                       .camera = names.data(),
                                       .camera_channel = on.data(),

@@ -23,11 +23,10 @@ struct KeptPanorama {
     }
 };
 
-/// Panoramas of the rig in `rig_file`; a failure of the test when it cannot be run.
-inline std::vector<KeptPanorama> RunAndKeep(const std::string& rig_file,
+/// Panoramas of a rig; a failure of the test when it could not be loaded or cannot be run.
+inline std::vector<KeptPanorama> RunAndKeep(const hal::Checked<app::RigConfig>& config,
                                             const app::RunOptions& options = {}) {
     std::vector<KeptPanorama> kept;
-    const auto config = app::LoadRigConfig(rig_file);
     EXPECT_TRUE(config) << config.error();
     if (!config) return kept;
     const std::atomic<bool> stop{false};
@@ -42,6 +41,12 @@ inline std::vector<KeptPanorama> RunAndKeep(const std::string& rig_file,
     const auto summary = app::RunRig(config.value(), options, stop, keep);
     EXPECT_TRUE(summary) << summary.error();
     return kept;
+}
+
+/// Of the rig in `rig_file`.
+inline std::vector<KeptPanorama> RunAndKeep(const std::string& rig_file,
+                                            const app::RunOptions& options = {}) {
+    return RunAndKeep(app::LoadRigConfig(rig_file), options);
 }
 
 }  // namespace hitchview::tests

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "drivers/v4l2_jpeg_decoder.hpp"
+#include "drivers/frame_jpeg_decoder.hpp"
 #include "tests/support/heap_calls.hpp"
 #include "tests/support/jpeg_picture.hpp"
 
@@ -17,7 +17,7 @@ constexpr hal::FrameFormat Format(int width, int height) {
     return {width, height, hal::PixelFormat::kNv12, hal::Range::kFull};
 }
 
-hal::Checked<Bytes> Decoded(V4l2JpegDecoder& decoder, const hal::FrameFormat& format,
+hal::Checked<Bytes> Decoded(FrameJpegDecoder& decoder, const hal::FrameFormat& format,
                             const Bytes& jpeg) {
     Bytes nv12(hal::FrameBytes(format));
     if (const auto decoded = decoder.Decode(jpeg, nv12); !decoded) {
@@ -52,46 +52,46 @@ Bytes HalfChroma(const tests::JpegPlanes& planes, int width, int height) {
     return nv12;
 }
 
-class V4l2JpegSamplingTest : public testing::TestWithParam<int> {};
+class FrameJpegSamplingTest : public testing::TestWithParam<int> {};
 
-TEST_P(V4l2JpegSamplingTest, DecodesToTheReferencesPlanesWithChromaAveraged) {
+TEST_P(FrameJpegSamplingTest, DecodesToTheReferencesPlanesWithChromaAveraged) {
     for (const auto& [width, height] : {std::pair{64, 48}, std::pair{50, 38}}) {
         const Bytes jpeg = JpegPicture(width, height, GetParam(), 1);
-        V4l2JpegDecoder decoder(Format(width, height));
+        FrameJpegDecoder decoder(Format(width, height));
         const auto nv12 = Decoded(decoder, Format(width, height), jpeg);
         ASSERT_TRUE(nv12.ok()) << nv12.error();
         EXPECT_EQ(nv12.value(), HalfChroma(tests::ReferencePlanes(jpeg), width, height));
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Samplings, V4l2JpegSamplingTest,
+INSTANTIATE_TEST_SUITE_P(Samplings, FrameJpegSamplingTest,
                          testing::Values(TJSAMP_420, TJSAMP_422, TJSAMP_440, TJSAMP_444));
 
-class V4l2JpegDecoderTest : public testing::Test {
+class FrameJpegDecoderTest : public testing::Test {
  protected:
     hal::Checked<Bytes> Decode(const Bytes& jpeg) { return Decoded(decoder_, kFormat, jpeg); }
 
     static constexpr hal::FrameFormat kFormat = Format(64, 48);
-    V4l2JpegDecoder decoder_{kFormat};
+    FrameJpegDecoder decoder_{kFormat};
     const Bytes good_ = JpegPicture(64, 48, TJSAMP_422, 1);
 };
 
-TEST_F(V4l2JpegDecoderTest, GreyHasNeutralChroma) {
+TEST_F(FrameJpegDecoderTest, GreyHasNeutralChroma) {
     const auto nv12 = Decode(JpegPicture(64, 48, TJSAMP_GRAY, 1));
     ASSERT_TRUE(nv12.ok()) << nv12.error();
     EXPECT_EQ(Bytes(nv12.value().begin() + 64 * 48, nv12.value().end()), Bytes(64 * 24, 128));
 }
 
-TEST_F(V4l2JpegDecoderTest, PicturesWithoutHuffmanTablesAreDecodedWithTheStandardOnes) {
+TEST_F(FrameJpegDecoderTest, PicturesWithoutHuffmanTablesAreDecodedWithTheStandardOnes) {
     const Bytes bare = tests::WithoutHuffmanTables(good_);
     ASSERT_LT(bare.size(), good_.size());
-    V4l2JpegDecoder fresh(kFormat);
+    FrameJpegDecoder fresh(kFormat);
     const auto nv12 = Decoded(fresh, kFormat, bare);
     ASSERT_TRUE(nv12.ok()) << nv12.error();
     EXPECT_EQ(nv12.value(), Decode(good_).value());
 }
 
-TEST_F(V4l2JpegDecoderTest, WhatIsNotAWholePictureOfTheSizeIsCorruptedAndTheNextIsGood) {
+TEST_F(FrameJpegDecoderTest, WhatIsNotAWholePictureOfTheSizeIsCorruptedAndTheNextIsGood) {
     const Bytes cut(good_.begin(), good_.begin() + static_cast<std::ptrdiff_t>(good_.size() / 2));
     const Bytes other = JpegPicture(32, 48, TJSAMP_422, 1);
     for (const Bytes& damaged : {cut, other, Bytes{}, Bytes{0xFF, 0xD8}, Bytes(500, 0)}) {
@@ -100,7 +100,7 @@ TEST_F(V4l2JpegDecoderTest, WhatIsNotAWholePictureOfTheSizeIsCorruptedAndTheNext
     }
 }
 
-TEST_F(V4l2JpegDecoderTest, AnyDamageIsSurvived) {
+TEST_F(FrameJpegDecoderTest, AnyDamageIsSurvived) {
     std::uint32_t random = 1;
     for (int i = 0; i < 3000; ++i) {
         Bytes damaged = good_;
@@ -113,13 +113,13 @@ TEST_F(V4l2JpegDecoderTest, AnyDamageIsSurvived) {
     EXPECT_TRUE(Decode(good_).ok());
 }
 
-TEST_F(V4l2JpegDecoderTest, PaddingAfterThePictureDoesNotHarm) {
+TEST_F(FrameJpegDecoderTest, PaddingAfterThePictureDoesNotHarm) {
     Bytes padded = good_;
     padded.resize(padded.size() + 100, 0);
     EXPECT_TRUE(Decode(padded).ok());
 }
 
-TEST_F(V4l2JpegDecoderTest, TakesNoMemoryNotEvenForDamagedPictures) {
+TEST_F(FrameJpegDecoderTest, TakesNoMemoryNotEvenForDamagedPictures) {
     if (!tests::kHeapCallsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
     const Bytes cut(good_.begin(), good_.begin() + 200);
     Bytes nv12(hal::FrameBytes(kFormat));

@@ -1,11 +1,11 @@
-#include "drivers/v4l2_jpeg_decoder.hpp"
+#include "drivers/frame_jpeg_decoder.hpp"
 
 #include <algorithm>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
 
-#include "drivers/v4l2_jpeg_memory.hpp"
+#include "drivers/frame_jpeg_memory.hpp"
 #include "hal/expect.hpp"
 
 // After jpeglib.h, which it needs.
@@ -56,7 +56,7 @@ void AverageLine(const JSAMPROW* lines, Steps steps, int samples, std::uint8_t* 
 
 }  // namespace
 
-struct V4l2JpegDecoder::Library {
+struct FrameJpegDecoder::Library {
     explicit Library(const hal::FrameFormat& frame_format);
     ~Library();
 
@@ -74,36 +74,36 @@ struct V4l2JpegDecoder::Library {
     std::jmp_buf way_out{};
     bool damaged = false;
     std::array<Component, 3> components;
-    std::unique_ptr<V4l2JpegMemory> memory;
+    std::unique_ptr<FrameJpegMemory> memory;
 };
 
-V4l2JpegDecoder::Library::Library(const hal::FrameFormat& frame_format) : format(frame_format) {
+FrameJpegDecoder::Library::Library(const hal::FrameFormat& frame_format) : format(frame_format) {
     decompressor.err = jpeg_std_error(&errors);
     errors.error_exit = Leave;
     errors.emit_message = NoteWarning;
     jpeg_create_decompress(&decompressor);
     decompressor.client_data = this;
-    memory = std::make_unique<V4l2JpegMemory>(decompressor);
+    memory = std::make_unique<FrameJpegMemory>(decompressor);
     const int width = (format.width_px + kMostLines - 1) / kMostLines * kMostLines;
     for (Component& component : components) component.TakeMemory(width);
 }
 
-V4l2JpegDecoder::Library::~Library() {
+FrameJpegDecoder::Library::~Library() {
     memory.reset();
     jpeg_destroy_decompress(&decompressor);
 }
 
-void V4l2JpegDecoder::Library::Leave(j_common_ptr common) {
+void FrameJpegDecoder::Library::Leave(j_common_ptr common) {
     std::longjmp(static_cast<Library*>(common->client_data)->way_out, 1);
 }
 
-void V4l2JpegDecoder::Library::NoteWarning(j_common_ptr common, int level) {
+void FrameJpegDecoder::Library::NoteWarning(j_common_ptr common, int level) {
     if (level >= 0 || IsHarmless(common->err->msg_code)) return;
     static_cast<Library*>(common->client_data)->damaged = true;
 }
 
-void V4l2JpegDecoder::Library::DecodePicture(std::span<const std::uint8_t> jpeg,
-                                             std::uint8_t* nv12) {
+void FrameJpegDecoder::Library::DecodePicture(std::span<const std::uint8_t> jpeg,
+                                              std::uint8_t* nv12) {
     Begin(jpeg);
     std::array<JSAMPARRAY, 3> planes{components[0].lines.data(), components[1].lines.data(),
                                      components[2].lines.data()};
@@ -117,7 +117,7 @@ void V4l2JpegDecoder::Library::DecodePicture(std::span<const std::uint8_t> jpeg,
     jpeg_finish_decompress(&decompressor);
 }
 
-void V4l2JpegDecoder::Library::Begin(std::span<const std::uint8_t> jpeg) {
+void FrameJpegDecoder::Library::Begin(std::span<const std::uint8_t> jpeg) {
     jpeg_mem_src(&decompressor, jpeg.data(), static_cast<unsigned long>(jpeg.size()));
     jpeg_read_header(&decompressor, TRUE);
     RefuseOthers();
@@ -126,7 +126,7 @@ void V4l2JpegDecoder::Library::Begin(std::span<const std::uint8_t> jpeg) {
     jpeg_start_decompress(&decompressor);
 }
 
-void V4l2JpegDecoder::Library::RefuseOthers() {
+void FrameJpegDecoder::Library::RefuseOthers() {
     const jpeg_decompress_struct& d = decompressor;
     bool taken = static_cast<int>(d.image_width) == format.width_px &&
                  static_cast<int>(d.image_height) == format.height_px &&
@@ -143,7 +143,7 @@ void V4l2JpegDecoder::Library::RefuseOthers() {
     if (!taken) Leave(reinterpret_cast<j_common_ptr>(&decompressor));
 }
 
-void V4l2JpegDecoder::Library::StoreLuma(int first_line, std::uint8_t* nv12) {
+void FrameJpegDecoder::Library::StoreLuma(int first_line, std::uint8_t* nv12) {
     const int lines =
         std::min(decompressor.max_v_samp_factor * kBlock, format.height_px - first_line);
     for (int i = 0; i < lines; ++i) {
@@ -153,7 +153,7 @@ void V4l2JpegDecoder::Library::StoreLuma(int first_line, std::uint8_t* nv12) {
     }
 }
 
-void V4l2JpegDecoder::Library::StoreChroma(int component, int first_line, std::uint8_t* nv12) {
+void FrameJpegDecoder::Library::StoreChroma(int component, int first_line, std::uint8_t* nv12) {
     const int width = format.width_px / 2;
     const std::ptrdiff_t luma = static_cast<std::ptrdiff_t>(format.width_px) * format.height_px;
     std::uint8_t* const plane = nv12 + luma + (component - 1);
@@ -174,15 +174,15 @@ void V4l2JpegDecoder::Library::StoreChroma(int component, int first_line, std::u
     }
 }
 
-V4l2JpegDecoder::V4l2JpegDecoder(const hal::FrameFormat& format)
+FrameJpegDecoder::FrameJpegDecoder(const hal::FrameFormat& format)
     : library_(std::make_unique<Library>(format)) {
     HV_EXPECT(format.pixel_format == hal::PixelFormat::kNv12);
 }
 
-V4l2JpegDecoder::~V4l2JpegDecoder() = default;
+FrameJpegDecoder::~FrameJpegDecoder() = default;
 
-hal::Result<hal::Done> V4l2JpegDecoder::Decode(std::span<const std::uint8_t> jpeg,
-                                               std::span<std::uint8_t> nv12) {
+hal::Result<hal::Done> FrameJpegDecoder::Decode(std::span<const std::uint8_t> jpeg,
+                                                std::span<std::uint8_t> nv12) {
     HV_EXPECT(nv12.size() == hal::FrameBytes(library_->format));
     if (jpeg.empty()) return hal::Error::kCorrupted;
     library_->damaged = false;

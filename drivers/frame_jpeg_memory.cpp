@@ -1,4 +1,4 @@
-#include "drivers/v4l2_jpeg_memory.hpp"
+#include "drivers/frame_jpeg_memory.hpp"
 
 #include <jerror.h>
 
@@ -20,7 +20,7 @@ constexpr std::size_t kAlignmentBytes = 64;
 
 }  // namespace
 
-void* V4l2JpegMemory::Stack::Take(std::size_t count) {
+void* FrameJpegMemory::Stack::Take(std::size_t count) {
     const auto top = reinterpret_cast<std::uintptr_t>(bytes.data()) + used;
     const std::size_t padding = (kAlignmentBytes - top % kAlignmentBytes) % kAlignmentBytes;
     if (count > bytes.size() - used || padding > bytes.size() - used - count) return nullptr;
@@ -29,7 +29,7 @@ void* V4l2JpegMemory::Stack::Take(std::size_t count) {
     return block;
 }
 
-V4l2JpegMemory::V4l2JpegMemory(jpeg_decompress_struct& decompressor)
+FrameJpegMemory::FrameJpegMemory(jpeg_decompress_struct& decompressor)
     : jpeg_memory_mgr{}, decompressor_(decompressor), original_(decompressor.mem) {
     lasting_.bytes.resize(kCapacityBytes);
     picture_.bytes.resize(kCapacityBytes);
@@ -39,22 +39,22 @@ V4l2JpegMemory::V4l2JpegMemory(jpeg_decompress_struct& decompressor)
     decompressor_.mem = this;
 }
 
-V4l2JpegMemory::~V4l2JpegMemory() {
+FrameJpegMemory::~FrameJpegMemory() {
     decompressor_.mem = original_;
 }
 
-V4l2JpegMemory& V4l2JpegMemory::Of(j_common_ptr decompressor) {
-    return static_cast<V4l2JpegMemory&>(*decompressor->mem);
+FrameJpegMemory& FrameJpegMemory::Of(j_common_ptr decompressor) {
+    return static_cast<FrameJpegMemory&>(*decompressor->mem);
 }
 
-void* V4l2JpegMemory::Take(j_common_ptr decompressor, int pool, std::size_t bytes) {
-    V4l2JpegMemory& self = Of(decompressor);
+void* FrameJpegMemory::Take(j_common_ptr decompressor, int pool, std::size_t bytes) {
+    FrameJpegMemory& self = Of(decompressor);
     void* const block = (pool == JPOOL_PERMANENT ? self.lasting_ : self.picture_).Take(bytes);
     if (block == nullptr) Refuse(decompressor);
     return block;
 }
 
-void V4l2JpegMemory::ServeBlocks() {
+void FrameJpegMemory::ServeBlocks() {
     alloc_small = Take;
     alloc_large = Take;
     free_pool = [](j_common_ptr decompressor, int pool) {
@@ -63,7 +63,7 @@ void V4l2JpegMemory::ServeBlocks() {
     realize_virt_arrays = [](j_common_ptr) {};
 }
 
-void V4l2JpegMemory::RefuseArrays() {
+void FrameJpegMemory::RefuseArrays() {
     alloc_sarray = [](j_common_ptr decompressor, int, JDIMENSION, JDIMENSION) -> JSAMPARRAY {
         Refuse(decompressor);
     };

@@ -15,13 +15,13 @@ namespace hitchview::drivers {
 /// Pictures of a Motion JPEG camera to NV12: baseline, grey or Y'CbCr with 4:2:0, 4:2:2, 4:4:0 or
 /// 4:4:4 chroma, which is averaged down; without Huffman tables, as many cameras send them, the
 /// standard ones serve. Memory is taken at construction only. Thread: one at a time.
-class V4l2JpegDecoder {
+class FrameJpegDecoder {
  public:
     /// `format`: kNv12; every picture has its size.
-    explicit V4l2JpegDecoder(const hal::FrameFormat& format);
-    ~V4l2JpegDecoder();
-    V4l2JpegDecoder(const V4l2JpegDecoder&) = delete;
-    V4l2JpegDecoder& operator=(const V4l2JpegDecoder&) = delete;
+    explicit FrameJpegDecoder(const hal::FrameFormat& format);
+    ~FrameJpegDecoder();
+    FrameJpegDecoder(const FrameJpegDecoder&) = delete;
+    FrameJpegDecoder& operator=(const FrameJpegDecoder&) = delete;
 
     /// `nv12`: FrameBytes(format). kCorrupted: cut short, damaged, of another size or kind; `nv12`
     /// then holds part of a picture.

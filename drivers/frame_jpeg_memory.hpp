@@ -13,13 +13,13 @@ namespace hitchview::drivers {
 /// on. One stack for what lives as long as the decompressor (tables), one for what lives as long as
 /// a picture. A picture that asks for more than a baseline one needs is refused by the
 /// decompressor's error_exit.
-class V4l2JpegMemory : private jpeg_memory_mgr {
+class FrameJpegMemory : private jpeg_memory_mgr {
  public:
     /// `decompressor` must outlive this memory, and gets its own memory back at the end.
-    explicit V4l2JpegMemory(jpeg_decompress_struct& decompressor);
-    ~V4l2JpegMemory();
-    V4l2JpegMemory(const V4l2JpegMemory&) = delete;
-    V4l2JpegMemory& operator=(const V4l2JpegMemory&) = delete;
+    explicit FrameJpegMemory(jpeg_decompress_struct& decompressor);
+    ~FrameJpegMemory();
+    FrameJpegMemory(const FrameJpegMemory&) = delete;
+    FrameJpegMemory& operator=(const FrameJpegMemory&) = delete;
 
  private:
     /// Blocks one above the other, given back all at once.
@@ -31,7 +31,7 @@ class V4l2JpegMemory : private jpeg_memory_mgr {
         void* Take(std::size_t count);
     };
 
-    static V4l2JpegMemory& Of(j_common_ptr decompressor);
+    static FrameJpegMemory& Of(j_common_ptr decompressor);
     static void* Take(j_common_ptr decompressor, int pool, std::size_t bytes);
     void ServeBlocks();
     void RefuseArrays();
