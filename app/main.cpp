@@ -86,6 +86,10 @@ CLI::App& AddReplay(CLI::App& app, ReplayOptions& options) {
     verb.add_option("--to", options.to, "with --log: end there");
     verb.add_flag("--realtime", options.run.realtime,
                   "one frame set per period; late ones are dropped");
+    verb.add_option("--speed", options.run.speed,
+                    "with --realtime: so many times as fast as it was recorded")
+        ->check(CLI::Range(0.1, 10.0))
+        ->capture_default_str();
     verb.add_flag("--offline", options.run.offline,
                   "read the recordings twice: steadiest, needs memory for all of them");
     verb.add_option("--coupling", options.coupling,

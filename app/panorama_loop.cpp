@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "app/playback_speed.hpp"
+
 namespace hitchview::app {
 namespace {
 
@@ -35,7 +37,7 @@ PanoramaLoop::PanoramaLoop(const Parts& parts, const RunOptions& options, RunSum
     : parts_(parts),
       options_(options),
       summary_(summary),
-      deadlines_(parts.board.clock().Now(), parts.board.period()) {}
+      deadlines_(parts.board.clock().Now(), AtSpeed(parts.board.period(), options.speed)) {}
 
 hal::Checked<hal::Done> PanoramaLoop::Run(const std::atomic<bool>& stop, const ShownHook& hook) {
     const hal::Instant ready = deadlines_.start();

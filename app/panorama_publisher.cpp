@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "app/playback_speed.hpp"
 #include "app/thread_schedule.hpp"
 
 namespace hitchview::app {
@@ -112,7 +113,8 @@ void PanoramaPublisher::SendHitchAngles() {
     if (beside_.telemetry == nullptr) return;
     while (auto angle = beside_.telemetry->Take()) {
         if (!options_.live_telemetry)
-            angle->received_at += hal::Instant(start_ns_.load(std::memory_order_acquire));
+            angle->received_at = hal::Instant(start_ns_.load(std::memory_order_acquire)) +
+                                 AtSpeed(angle->received_at, options_.speed);
         Count(publisher_.Publish(*angle));
     }
 }

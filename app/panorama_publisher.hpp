@@ -22,6 +22,7 @@ struct PanoramaPublisherOptions {
     /// Real time: what does not get away in time is dropped, so that no latency queues up. False:
     /// Append waits, nothing is dropped (unpaced replay).
     bool drop_when_late = true;
+    double speed = 1;  ///< of the telemetry's time, if it is a recording's; see AtSpeed
     /// The telemetry's moments are the clock's already, not those of a recording.
     bool live_telemetry = false;
     /// Threads that compress; beyond JpegEncoder::kSlices they do not help.

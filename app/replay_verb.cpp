@@ -64,6 +64,8 @@ std::string Contradiction(const ReplayOptions& options) {
         return "--offline reads all of a recording before it shows a frame: not with --realtime";
     if (options.run.offline && options.run.lookahead_frames)
         return "--offline sees all frames ahead: not with --lookahead";
+    if (options.run.speed != 1 && !options.run.realtime)
+        return "--speed needs --realtime: otherwise it goes as fast as it can";
     if (options.coupling && !options.run.offline) return "--coupling needs --offline";
     if (options.rig.empty() && options.logs.empty()) return "--rig or --log is needed";
     const bool part = !options.from.empty() || !options.to.empty();

@@ -30,6 +30,7 @@ struct RunOptions {
     algo::Coupling coupling = algo::Coupling::kCorrected;  ///< offline
     ProgressHook progress{};                               ///< offline
     bool realtime = false;     ///< not offline; one frame set per period; late ones are dropped
+    double speed = 1;          ///< realtime: of recordings, times their own. [0.1, 10]
     bool write_video = false;  ///< out/panorama.avi
     bool write_views = false;  ///< out/tractor.avi, out/trailer.avi
     bool publish = false;      ///< over LCM

@@ -1,6 +1,7 @@
 #include "app/run_outputs.hpp"
 
 #include "app/board.hpp"
+#include "app/playback_speed.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -19,11 +20,12 @@ hal::SeamState ToHal(algo::SeamState state) {
     return hal::SeamState::kNoOverlap;
 }
 
-hal::PanoramaStatus Status(const ShownPanorama& shown, const RunSummary& run, hal::Instant start) {
+hal::PanoramaStatus Status(const ShownPanorama& shown, const RunSummary& run,
+                           hal::Instant captured_from) {
     const algo::Composition& c = *shown.composition;
     hal::PanoramaStatus status;
     status.sequence = shown.picture.header.sequence;
-    status.captured_from = start + shown.picture.header.captured_at;
+    status.captured_from = captured_from;
     status.spread = shown.captured_until - shown.picture.header.captured_at;
     status.cameras_missing = shown.cameras_missing;
     for (const algo::Overlap overlap : algo::kOverlaps) {
@@ -56,6 +58,7 @@ hal::Checked<std::unique_ptr<RunOutputs>> RunOutputs::Open(const RigConfig& conf
                                                            const RunSummary& run,
                                                            const hal::FrameFormat& format) {
     std::unique_ptr<RunOutputs> outputs(new RunOutputs);
+    outputs->speed_ = options.speed;
     if (const auto videos = outputs->OpenVideos(options, run, format); !videos)
         return videos.error();
     if (const auto network = outputs->OpenNetwork(config, options, board, run, format); !network) {
@@ -106,6 +109,7 @@ hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const R
                                           .highest_quality = config.publish.jpeg_quality},
                                  .calibration_id = run.calibration_id,
                                  .drop_when_late = options.realtime,
+                                 .speed = options.speed,
                                  .live_telemetry = board.is_can_live(),
                                  .threads = options.workers.value_or(config.workers)});
     return hal::Done{};
@@ -130,10 +134,15 @@ hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& p
 void RunOutputs::Publish(const ShownPanorama& shown, const RunSummary& run) {
     if (telemetry_) telemetry_->Advance(shown.captured_until);
     hal::FrameView picture = shown.picture;
-    picture.header.captured_at += start_;
+    const hal::Instant captured_from = OnThisClock(picture.header.captured_at);
+    picture.header.captured_at = captured_from;
     publisher_->Append({.picture = picture,
-                        .captured_until = start_ + shown.captured_until,
-                        .status = Status(shown, run, start_)});
+                        .captured_until = OnThisClock(shown.captured_until),
+                        .status = Status(shown, run, captured_from)});
+}
+
+hal::Instant RunOutputs::OnThisClock(hal::Instant captured) const {
+    return start_ + AtSpeed(captured, speed_);
 }
 
 void RunOutputs::AddPools(std::vector<PoolSummary>& pools) const {

@@ -46,7 +46,11 @@ class RunOutputs {
                                         const hal::FrameFormat& format);
     void Publish(const ShownPanorama& shown, const RunSummary& run);
 
+    /// Of a moment of the cameras' time.
+    [[nodiscard]] hal::Instant OnThisClock(hal::Instant captured) const;
+
     hal::Instant start_{};
+    double speed_ = 1;  ///< of the cameras' time
     std::unique_ptr<VideoWriter> panorama_;
     algo::PerUnit<std::unique_ptr<VideoWriter>> views_;
     std::unique_ptr<hal::Publisher> network_;
