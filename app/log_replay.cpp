@@ -93,13 +93,23 @@ bool LogReplay::TakeFrame(std::size_t camera, const LogMerge::Event& event) {
 
 void LogReplay::TakeCanFrame(const drivers::LcmLogEvent& event) {
     if (drivers::KindOf(event.data) != drivers::LoggedKind::kCanFrame) return;
-    auto logged = drivers::ParseLoggedCanFrame(event.data);
+    const auto logged = drivers::ParseLoggedCanFrame(event.data);
     if (!logged) return;
-    hal::CanFrame& frame = logged->frame;
-    const auto moment = timeline_.MomentOf(config_.stamped ? frame.received_at : frame.epoch);
-    if (!moment) return;
-    frame.received_at = *moment;
-    can_bus_->Append(frame);
+    if (early_can_.size() == kMostEarlyCanFrames) early_can_.erase(early_can_.begin());
+    early_can_.push_back(logged.value().frame);
+    HandOverCanFrames();
+}
+
+/// As soon as it is known when they came.
+void LogReplay::HandOverCanFrames() {
+    if (!timeline_.started()) return;
+    for (hal::CanFrame& frame : early_can_) {
+        const auto moment = timeline_.MomentOf(config_.stamped ? frame.received_at : frame.epoch);
+        if (!moment) continue;
+        frame.received_at = *moment;
+        can_bus_->Append(frame);
+    }
+    early_can_.clear();
 }
 
 /// Whether the camera has become another one, for good.

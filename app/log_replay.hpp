@@ -39,6 +39,7 @@ class LogReplay final : public FrameSynchronizer {
     static constexpr std::size_t kSetsAhead = 4;
     /// Pictures of another kind in a row that end a replay; fewer are damage.
     static constexpr int kMostOthers = 30;
+    static constexpr std::size_t kMostEarlyCanFrames = 256;
 
     /// Cameras and bus (null: none) must outlive it, `cameras` in the order of the rig.
     /// The error names a recording that cannot be read.
@@ -60,6 +61,7 @@ class LogReplay final : public FrameSynchronizer {
     [[nodiscard]] bool Take(const LogMerge::Event& event);
     [[nodiscard]] bool TakeFrame(std::size_t camera, const LogMerge::Event& event);
     void TakeCanFrame(const drivers::LcmLogEvent& event);
+    void HandOverCanFrames();
     [[nodiscard]] bool IsOther(std::size_t camera, const drivers::LoggedImage& image,
                                std::int64_t utime_us);
     void Say(const std::string& failure);
@@ -73,6 +75,7 @@ class LogReplay final : public FrameSynchronizer {
     std::vector<LogCamera> cameras_;
     std::vector<Seen> seen_;
     drivers::LcmLogCanBus* can_bus_;
+    std::vector<hal::CanFrame> early_can_;  ///< that came before the first picture, the newest
     LogTimeline timeline_;
     LogSetFormer former_;
     std::atomic<bool> stop_{false};

@@ -33,6 +33,9 @@ class LogTimeline {
         return logged + *shift_;
     }
 
+    /// Whether a frame has been added.
+    [[nodiscard]] bool started() const { return shift_.has_value(); }
+
     /// Of something else. Empty where it is far from the frames' moments.
     [[nodiscard]] std::optional<hal::Instant> MomentOf(hal::Instant logged) const {
         if (!shift_ || !IsNear(logged)) return std::nullopt;
