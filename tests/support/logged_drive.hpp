@@ -11,6 +11,7 @@
 #include "app/config.hpp"
 #include "app/log_channels.hpp"
 #include "tests/support/log_messages.hpp"
+#include "tests/support/simulated_rig_files.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace hitchview::tests {
@@ -25,7 +26,7 @@ struct DriveMessage {
 /// A drive of simulated cameras as it is recorded: the frames of all cameras as they were, in order
 /// of the frame sets, and the CAN bus.
 struct RecordedDrive {
-    static constexpr std::int64_t kStart_ns = 5'000'000'000;  ///< of the recording's clock
+    static constexpr std::int64_t kStart_ns = 500'000'000;  ///< of the recording's clock
 
     RigTexts texts{};
     std::vector<std::string> cameras{};
@@ -48,6 +49,19 @@ struct RecordedDrive {
         }
     }
 };
+
+/// Calibration and rig file of a small drive of the simulated tractor-trailer; the latter's path.
+inline std::string WriteDriveRig(const TemporaryFolder& folder, int frames) {
+    WriteSimulatedCalibration(folder, 320, 180);
+    return folder.Write("rig.yaml",
+                        "schema: 1\n"
+                        "canvas: {projection: cylinder, size_px: [1024, 180]}\n"
+                        "calibration: rig.calib.yaml\n" +
+                            SimulatedUnits([](const std::string&) { return "{simulated: true}"; }) +
+                            "simulation: {frames: " + std::to_string(frames) +
+                            ", camera_size_px: [320, 180]}\ncan:\n  source: {simulated: true}\n" +
+                            kSimulatedHitchAngle);
+}
 
 inline LoggedPicture PictureOf(const hal::FrameView& frame) {
     const std::uint8_t* const bytes = frame.planes[0].data;
