@@ -98,10 +98,11 @@ bool WebCameras::IsLost(std::size_t camera, Instant now) const {
 
 WebCameraState WebCameras::State(std::size_t camera, Instant now) const {
     HV_EXPECT(camera < cameras_.size());
-    const bool told =
-        IsRecent(status_at_, now, kStatusHolds) || IsRecent(health_at_, now, kHealthHolds);
-    if (!told) return WebCameraState::kUnknown;
-    return IsLost(camera, now) ? WebCameraState::kLost : WebCameraState::kLive;
+    const bool status = IsRecent(status_at_, now, kStatusHolds);
+    const bool health = IsRecent(health_at_, now, kHealthHolds);
+    if ((status || health) && IsLost(camera, now)) return WebCameraState::kLost;
+    // Health alone says that a camera lives only where no status has ever come.
+    return status || (health && !status_at_) ? WebCameraState::kLive : WebCameraState::kUnknown;
 }
 
 nlohmann::json WebCameras::ToJson(Instant now) const {

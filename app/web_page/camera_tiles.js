@@ -4,7 +4,7 @@ import { byId, figure, isNumber, make, setText, sleep, visible } from "./text.js
 
 const STALE_AFTER_MS = 3000;
 const PAUSE_MS = 400;
-const WORDS = { live: "LIVE", lost: "LOST", unknown: "NO WORD" };
+const WORDS = { live: "LIVE", lost: "LOST", unknown: "NO CONTACT" };
 
 class Tile {
     constructor() {
@@ -38,7 +38,8 @@ class Tile {
         this.name.title = camera.name;
         setText(this.word, WORDS[camera.state] ?? camera.state);
         setText(this.unit, camera.unit);
-        setText(this.rate, isNumber(camera.frames_per_s) ? `${figure(camera.frames_per_s, "fps", 1)}` : "");
+        const told = camera.state !== "unknown" && isNumber(camera.frames_per_s);
+        setText(this.rate, told ? figure(camera.frames_per_s, "fps", 1) : "");
         const damaged = (camera.lost ?? 0) + (camera.corrupted ?? 0);
         setText(this.counts, isNumber(camera.delivered) ? `${figure(damaged)} lost` : "");
         this.refresh();
@@ -62,9 +63,11 @@ class Tile {
 
 export class CameraTiles {
     #tiles = [];
+    #cameras = [];
     #serial = 0;
 
     tell(cameras) {
+        this.#cameras = cameras;
         while (this.#tiles.length < cameras.length) {
             const tile = new Tile();
             this.#tiles.push(tile);
@@ -81,12 +84,11 @@ export class CameraTiles {
 
     /** Nobody says anything of them any more. */
     silence() {
-        for (const tile of this.#tiles) {
-            tile.state = "unknown";
-            tile.root.dataset.state = "unknown";
-            setText(tile.word, WORDS.unknown);
-            tile.refresh();
-        }
+        this.tell(this.#cameras.map((camera) => ({ ...camera, state: "unknown" })));
+    }
+
+    get lost() {
+        return this.#cameras.filter((camera) => camera.state === "lost").length;
     }
 
     async run() {

@@ -64,7 +64,7 @@ export class LineChart {
         }
         this.#options.lines.forEach((line, i) => {
             context.strokeStyle = colour(line);
-            context.lineWidth = 2;
+            context.lineWidth = i === 0 ? 3 : 1.5;  // where both lie on each other, both are seen
             context.lineJoin = "round";
             this.#drawLine(context, i + 1, toX, toY);
         });
@@ -96,7 +96,8 @@ export class LineChart {
             context.moveTo(area.x, y);
             context.lineTo(area.x + area.width, y);
             context.stroke();
-            context.fillText(value.toFixed(digits) + this.#options.measure, area.x - 6, y);
+            const label = value.toFixed(digits).replace(/^-0$/, "0").replace("-", "−");
+            context.fillText(label + this.#options.measure, area.x - 6, y);
         }
         context.textBaseline = "top";
         for (const seconds of [60, 45, 30, 15, 0]) {

@@ -26,7 +26,7 @@ export class EventList {
     #count = 0;
 
     constructor() {
-        this.#list.append(make("li", "empty", "Nothing has happened since this page's server started."));
+        this.clear();
     }
 
     append(events) {
@@ -40,7 +40,8 @@ export class EventList {
 
     clear() {
         this.#count = 0;
-        this.#list.replaceChildren();
+        this.#list.replaceChildren(make("li", "empty", "Nothing has happened since this server was started."));
+        setText(byId("event-facts"), "");
     }
 }
 

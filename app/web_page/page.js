@@ -8,11 +8,12 @@ import { PanoramaView } from "./panorama.js";
 import { Recordings } from "./recordings.js";
 import { RigFigures, tellHeadline } from "./rig_figures.js";
 import { StageTimes } from "./stage_times.js";
-import { byId, duration, figure, make, setText } from "./text.js";
+import { angle, byId, figure, make, setText } from "./text.js";
 
 const SILENT_AFTER_MS = 1500;
 const RETRY_MS = 1000;
 const STATUS_HOLDS_MS = 1000;
+const HEALTH_HOLDS_MS = 2500;
 
 const panorama = new PanoramaView();
 const cameras = new CameraTiles();
@@ -28,6 +29,8 @@ let stream = null;
 let heard_at_ms = -Infinity;
 let status_age_ms = null;
 
+const isRecent = (age_ms, holds_ms) => age_ms !== null && age_ms <= holds_ms;
+
 /** Fills a legend and returns the elements that take the values of its lines. */
 function legend(id, lines) {
     return lines.map(([colour, name]) => {
@@ -37,20 +40,20 @@ function legend(id, lines) {
     });
 }
 
-const latency_values = legend("latency-legend", [["first", "captured to published"], ["second", "computing"]]);
+const latency_values = legend("latency-legend", [["first", "capture to LCM"], ["second", "computing"]]);
 const hitch_values = legend("hitch-legend", [["first", "CAN sensor"], ["second", "images"]]);
-legend("stages-legend", [["first", "half"], ["soft", "99 of 100 panoramas"]]);
+legend("stages-legend", [["first", "half of the panoramas"], ["soft", "99 of 100"]]);
 
 function tellCharts(news) {
-    latency.append(news.traces.status.map(([at, late, total]) => [at, late, total]));
+    latency.append(news.traces.status.map(([at, capture_to_lcm, computing]) => [at, capture_to_lcm, computing]));
     latency.draw(news.now_ms);
     hitch.append(joined(news.traces));
     hitch.draw(news.now_ms);
     setText(latency_values[0], figure(news.status?.latency_ms, "ms", 1));
     setText(latency_values[1], figure(news.status?.total_ms, "ms", 1));
     setText(hitch_values[0], news.hitch_angle?.angle_deg == null ? news.hitch_angle?.quality ?? "–" :
-        figure(news.hitch_angle.angle_deg, "°", 1));
-    setText(hitch_values[1], figure(news.status?.articulation_deg, "°", 1));
+        angle(news.hitch_angle.angle_deg));
+    setText(hitch_values[1], angle(news.status?.articulation_deg));
 }
 
 /** Angles of sensor and images in one row by time; undefined where the other one speaks. */
@@ -66,8 +69,8 @@ function tell(news) {
     health = news.health ?? health;
     cameras.tell(news.cameras);
     events.append(news.events);
-    tellHeadline(news.status, health);
-    setText(byId("uptime"), health ? duration(health.uptime_s) : "–");
+    tellHeadline(isRecent(news.status_age_ms, STATUS_HOLDS_MS) ? news.status : null,
+        isRecent(news.health_age_ms, HEALTH_HOLDS_MS) ? health : null);
     figures.tell(news.status, health);
     tellCharts(news);
     if (news.health) stages.draw(news.health.stages);
@@ -98,17 +101,26 @@ function disconnect() {
     stream = null;
 }
 
+/** The word in the header, what kind it is of, and why there is no picture. */
+function stateNow() {
+    if (performance.now() - heard_at_ms > SILENT_AFTER_MS) {
+        return ["NO CONNECTION", "bad", "The server of this page does not answer."];
+    }
+    if (panorama.live && cameras.lost > 0) return [`LIVE, ${cameras.lost} LOST`, "warn", ""];
+    if (panorama.live) return ["LIVE", "good", ""];
+    return ["NO IMAGE", "bad", isRecent(status_age_ms, STATUS_HOLDS_MS) ?
+        "Status comes, pictures do not: see the receive buffer below." :
+        "The program that makes the panoramas is silent."];
+}
+
 function refreshState() {
-    const connected = performance.now() - heard_at_ms <= SILENT_AFTER_MS;
-    const state = byId("state");
-    if (!connected) cameras.silence();
-    const [word, kind, why] = !connected ? ["NO CONNECTION", "bad", "The server of this page does not answer."] :
-        panorama.live ? ["LIVE", "good", ""] :
-        status_age_ms !== null && status_age_ms <= STATUS_HOLDS_MS ?
-            ["NO IMAGE", "bad", "Status comes, pictures do not: see the receive buffer below."] :
-            ["NO IMAGE", "bad", "The program that makes the panoramas is silent."];
-    setText(state, word);
-    state.dataset.state = kind;
+    const [word, kind, why] = stateNow();
+    if (word === "NO CONNECTION") {
+        cameras.silence();
+        tellHeadline(null, null);
+    }
+    setText(byId("state"), word);
+    byId("state").dataset.state = kind;
     setText(byId("no-image-why"), why);
 }
 

@@ -69,8 +69,8 @@ export class PanoramaView {
         }
         const age_ms = performance.now() - this.#taken_at_ms;
         setText(byId("picture-facts"),
-            `no. ${figure(this.#sequence)} · ${this.#canvas.width}×${this.#canvas.height} · ` +
-            `${bytes(this.#size_bytes)} · came ${figure(Math.ceil(age_ms / 50) * 50, "ms")} ago at most`);
+            `no. ${figure(this.#sequence)} · under ${figure(Math.ceil((age_ms + 1) / 50) * 50, "ms")} old · ` +
+            `${this.#canvas.width}×${this.#canvas.height} · ${bytes(this.#size_bytes)}`);
     }
 
     #toggleFullScreen() {

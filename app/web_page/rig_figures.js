@@ -1,6 +1,6 @@
 // Figures of the rig and of the machine that makes the panoramas.
 
-import { byId, bytes, figure, isNumber, make, setText } from "./text.js";
+import { byId, bytes, duration, figure, isNumber, make, setText } from "./text.js";
 
 const RECORDING = ["off", "armed", "on", "stopped: see events"];
 
@@ -46,6 +46,7 @@ export class RigFigures {
     #set(name, text, bad = false) {
         if (!this.#values.has(name)) {
             const value = make("dd", "");
+            byId("no-figures").hidden = true;
             byId("figures").append(make("dt", "", name), value);
             this.#values.set(name, value);
         }
@@ -56,10 +57,11 @@ export class RigFigures {
     }
 }
 
+/** What stands in the header; null for what nobody has said lately. */
 export function tellHeadline(status, health) {
     setText(byId("latency"), status ? figure(status.latency_ms, "ms", 0) : "–");
     setText(byId("misses"), status ? figure(status.deadline_misses) : "–");
-    if (!health) return;
-    setText(byId("rate"), isNumber(health.panoramas_per_s) ? figure(health.panoramas_per_s, "/s", 1) : "–");
-    setText(byId("calibration"), health.calibration_id || "none");
+    setText(byId("rate"), isNumber(health?.panoramas_per_s) ? figure(health.panoramas_per_s, "/s", 1) : "–");
+    setText(byId("calibration"), health ? health.calibration_id || "none" : "–");
+    setText(byId("uptime"), health ? duration(health.uptime_s) : "–");
 }

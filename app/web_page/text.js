@@ -22,6 +22,9 @@ export function figure(value, measure = "", digits = 0) {
         (measure && "\u00a0" + measure);
 }
 
+/** Degrees with a sign that is as wide as a digit. */
+export const angle = (value) => figure(value, "", 1).replace("-", "−") + (isNumber(value) ? "°" : "");
+
 export function bytes(value) {
     if (!isNumber(value) || value < 0) return "–";
     const measures = ["B", "kB", "MB", "GB", "TB"];
