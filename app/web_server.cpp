@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "app/web_listen.hpp"
 #include "app/web_page_files.hpp"
@@ -31,6 +33,24 @@ std::string_view Header(MHD_Connection* connection, const char* name) {
 std::string_view Argument(MHD_Connection* connection, const char* name) {
     const char* const value = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, name);
     return value != nullptr ? value : std::string_view{};
+}
+
+/// What is refused before anything is looked up; the connection is then closed.
+std::optional<WebReply> Refusal(MHD_Connection* connection, std::string_view method) {
+    if (method != "GET" && method != "HEAD") {
+        return std::move(WebReply::Text(MHD_HTTP_METHOD_NOT_ALLOWED, "only GET and HEAD")
+                             .With("Allow", "GET, HEAD"));
+    }
+    if (!IsOwnHost(Header(connection, "Host"))) {
+        return WebReply::Text(MHD_HTTP_MISDIRECTED_REQUEST,
+                              "call this server by its address or as localhost");
+    }
+    const std::string_view length = Header(connection, "Content-Length");
+    const bool has_body = !length.empty() && length != "0";
+    if (has_body || !Header(connection, "Transfer-Encoding").empty()) {
+        return WebReply::Text(MHD_HTTP_BAD_REQUEST, "a request has no body here");
+    }
+    return std::nullopt;
 }
 
 bool Waits(WebRoute route) {
@@ -98,46 +118,44 @@ void WebServer::Serve(Instant now) {
 
 MHD_Result WebServer::OnRequest(void* self, MHD_Connection* connection, const char* url,
                                 const char* method, const char*, const char*, std::size_t*,
-                                void** waiting) {
+                                void** state) {
     auto* const server = static_cast<WebServer*>(self);
-    if (*waiting != nullptr) return server->AnswerOrWait(*static_cast<Waiting*>(*waiting));
-    const std::string_view verb = method;
-    if (verb != "GET" && verb != "HEAD") {
-        return WebReply::Text(MHD_HTTP_METHOD_NOT_ALLOWED, "only GET and HEAD")
-            .With("Allow", "GET, HEAD")
-            .Send(connection);
+    auto* const request = static_cast<Request*>(*state);
+    if (request == nullptr) {
+        if (const auto refused = Refusal(connection, method)) return refused->Send(connection);
+        // An answer at this first call would close the connection behind it.
+        *state = new Request{.connection = connection};
+        return MHD_YES;
     }
-    if (!IsOwnHost(Header(connection, "Host"))) {
-        return WebReply::Text(MHD_HTTP_MISDIRECTED_REQUEST,
-                              "call this server by its address or as localhost")
-            .Send(connection);
-    }
-    return server->Answer(connection, url, waiting);
+    return request->waits ? server->AnswerOrWait(*request) : server->Answer(*request, url);
 }
 
-void WebServer::OnCompleted(void*, MHD_Connection*, void** waiting, MHD_RequestTerminationCode) {
-    const std::unique_ptr<Waiting> done(static_cast<Waiting*>(*waiting));
-    *waiting = nullptr;
+void WebServer::OnCompleted(void*, MHD_Connection*, void** state, MHD_RequestTerminationCode) {
+    const std::unique_ptr<Request> done(static_cast<Request*>(*state));
+    *state = nullptr;
 }
 
-MHD_Result WebServer::Answer(MHD_Connection* connection, std::string_view path, void** waiting) {
+MHD_Result WebServer::Answer(Request& request, std::string_view path) {
+    MHD_Connection* const connection = request.connection;
     const WebTarget target = TargetOf(path);
     const bool link_from_elsewhere = Header(connection, "Sec-Fetch-Site") == "cross-site";
     if (link_from_elsewhere && target.route != WebRoute::kPageFile) {
         return WebReply::Text(MHD_HTTP_FORBIDDEN, "not for pages of others").Send(connection);
     }
     if (Waits(target.route)) {
-        auto request = std::make_unique<Waiting>();
-        *request = {connection, target.route, SerialOf(Argument(connection, "after")),
-                    now_ + kLongestWait, Turn::kWaits};
-        *waiting = request.get();
-        return AnswerOrWait(*request.release());
+        request.waits = true;
+        request.route = target.route;
+        request.after = SerialOf(Argument(connection, "after"));
+        request.until = now_ + kLongestWait;
+        return AnswerOrWait(request);
     }
     if (target.route == WebRoute::kEvents) return streams_.Open(connection).Send(connection);
-    if (target.route == WebRoute::kRecordings)
+    if (target.route == WebRoute::kRecordings) {
         return WebReply::Json(recordings_.List()).Send(connection);
-    if (target.route == WebRoute::kRecordingFile)
+    }
+    if (target.route == WebRoute::kRecordingFile) {
         return Recording(connection, target.name).Send(connection);
+    }
     return PageFile(connection, target.name).Send(connection);
 }
 
@@ -161,10 +179,10 @@ std::uint64_t WebServer::SerialOfNewest(WebRoute route) const {
     return state_.pictures().panorama().serial;
 }
 
-bool WebServer::HasNews(const Waiting& waiting) const {
-    const std::uint64_t newest = SerialOfNewest(waiting.route);
-    if (newest == 0 || newest == waiting.after) return false;
-    return waiting.route != WebRoute::kPanorama ||
+bool WebServer::HasNews(const Request& request) const {
+    const std::uint64_t newest = SerialOfNewest(request.route);
+    if (newest == 0 || newest == request.after) return false;
+    return request.route != WebRoute::kPanorama ||
            now_ - state_.pictures().panorama().arrived_at <= kWebPictureStaleAfter;
 }
 
@@ -173,17 +191,17 @@ std::size_t WebServer::CostOf(WebRoute route) const {
     return route == WebRoute::kOverlay ? state_.overlay().size() : kUsualPreviewsBytes;
 }
 
-WebReply WebServer::News(const Waiting& waiting) const {
-    const std::uint64_t newest = SerialOfNewest(waiting.route);
-    if (closing_ || waiting.turn != Turn::kNews || !HasNews(waiting)) {
+WebReply WebServer::News(const Request& request) const {
+    const std::uint64_t newest = SerialOfNewest(request.route);
+    if (closing_ || request.turn != Turn::kNews || !HasNews(request)) {
         return WebReply::Nothing(newest);
     }
-    if (waiting.route == WebRoute::kPanorama) {
+    if (request.route == WebRoute::kPanorama) {
         return WebReply::Picture(state_.pictures().panorama(), now_);
     }
     // A server that was started anew counts from one again.
-    const std::uint64_t after = waiting.after <= newest ? waiting.after : 0;
-    WebReply reply = waiting.route == WebRoute::kOverlay
+    const std::uint64_t after = request.after <= newest ? request.after : 0;
+    WebReply reply = request.route == WebRoute::kOverlay
                          ? WebReply::Json(state_.overlay())
                          : WebReply::Bytes(state_.pictures().PreviewsAfter(after, now_),
                                            "application/octet-stream");
@@ -191,29 +209,29 @@ WebReply WebServer::News(const Waiting& waiting) const {
     return reply;
 }
 
-WebServer::Turn WebServer::TurnOf(const Waiting& waiting) {
-    if (closing_ || now_ >= waiting.until) return Turn::kNothing;
-    if (!HasNews(waiting)) return Turn::kWaits;
-    if (budget_.Take(CostOf(waiting.route), now_)) return Turn::kNews;
+WebServer::Turn WebServer::TurnOf(const Request& request) {
+    if (closing_ || now_ >= request.until) return Turn::kNothing;
+    if (!HasNews(request)) return Turn::kWaits;
+    if (budget_.Take(CostOf(request.route), now_)) return Turn::kNews;
     somebody_is_due_ = true;
     return Turn::kWaits;
 }
 
-MHD_Result WebServer::AnswerOrWait(Waiting& waiting) {
+MHD_Result WebServer::AnswerOrWait(Request& request) {
     // Nobody overtakes those who wait for their share of the budget.
-    if (waiting.turn == Turn::kWaits && !somebody_is_due_) waiting.turn = TurnOf(waiting);
-    if (closing_ || waiting.turn != Turn::kWaits) return News(waiting).Send(waiting.connection);
-    waiting_.push_back(&waiting);
-    MHD_suspend_connection(waiting.connection);
+    if (request.turn == Turn::kWaits && !somebody_is_due_) request.turn = TurnOf(request);
+    if (closing_ || request.turn != Turn::kWaits) return News(request).Send(request.connection);
+    waiting_.push_back(&request);
+    MHD_suspend_connection(request.connection);
     return MHD_YES;
 }
 
 void WebServer::GiveTurns() {
     somebody_is_due_ = false;
-    std::erase_if(waiting_, [&](Waiting* waiting) {
-        waiting->turn = TurnOf(*waiting);
-        if (waiting->turn != Turn::kWaits) MHD_resume_connection(waiting->connection);
-        return waiting->turn != Turn::kWaits;
+    std::erase_if(waiting_, [&](Request* request) {
+        request->turn = TurnOf(*request);
+        if (request->turn != Turn::kWaits) MHD_resume_connection(request->connection);
+        return request->turn != Turn::kWaits;
     });
 }
 

@@ -21,7 +21,7 @@ namespace hitchview::app {
 struct WebServerOptions {
     std::string address = "127.0.0.1";  ///< IPv4 or IPv6
     int port = 0;                       ///< [0, 65535]; 0: one that is free
-    int connections = 256;              ///< at most; further ones are closed. [1, 1024]
+    int connections = 256;              ///< at most; further ones wait until one ends. [4, 1024]
     double bytes_per_s = 40e6;          ///< pictures to all clients together
 };
 
@@ -58,9 +58,11 @@ class WebServer {
  private:
     enum class Turn { kWaits, kNews, kNothing };
 
-    /// A client that waits for something newer than it has.
-    struct Waiting {
+    /// One that is not answered yet; what stands below `waits` is of those that wait for something
+    /// newer than the client has.
+    struct Request {
         MHD_Connection* connection = nullptr;
+        bool waits = false;
         WebRoute route = WebRoute::kPanorama;
         std::uint64_t after = 0;
         hal::Instant until{};
@@ -73,21 +75,21 @@ class WebServer {
 
     static MHD_Result OnRequest(void* self, MHD_Connection* connection, const char* url,
                                 const char* method, const char* version, const char* body,
-                                std::size_t* body_bytes, void** waiting);
-    static void OnCompleted(void* self, MHD_Connection* connection, void** waiting,
+                                std::size_t* body_bytes, void** request);
+    static void OnCompleted(void* self, MHD_Connection* connection, void** request,
                             MHD_RequestTerminationCode code);
 
-    MHD_Result Answer(MHD_Connection* connection, std::string_view path, void** waiting);
-    MHD_Result AnswerOrWait(Waiting& waiting);
+    MHD_Result Answer(Request& request, std::string_view path);
+    MHD_Result AnswerOrWait(Request& request);
     WebReply PageFile(MHD_Connection* connection, std::string_view name) const;
     WebReply Recording(MHD_Connection* connection, std::string_view name) const;
 
     [[nodiscard]] std::uint64_t SerialOfNewest(WebRoute route) const;
-    [[nodiscard]] bool HasNews(const Waiting& waiting) const;
+    [[nodiscard]] bool HasNews(const Request& request) const;
     [[nodiscard]] std::size_t CostOf(WebRoute route) const;
     /// Whether it is answered now, and how; takes its share of the budget.
-    [[nodiscard]] Turn TurnOf(const Waiting& waiting);
-    [[nodiscard]] WebReply News(const Waiting& waiting) const;
+    [[nodiscard]] Turn TurnOf(const Request& request);
+    [[nodiscard]] WebReply News(const Request& request) const;
     void GiveTurns();
 
     const WebState& state_;
@@ -97,7 +99,7 @@ class WebServer {
     hal::Instant now_{};
     bool closing_ = false;
     int port_ = 0;
-    std::deque<Waiting*> waiting_{};  ///< suspended ones, who came first in front
+    std::deque<Request*> waiting_{};  ///< suspended ones, who came first in front
     bool somebody_is_due_ = false;    ///< among them, and the budget is used up
     MHD_Daemon* daemon_ = nullptr;
 };

@@ -2,6 +2,7 @@
 // second. Commands, one a line, on its input:
 //   lose N | back N   camera N shows no data
 //   event TEXT        an event with this text
+//   rename N TEXT     camera N is called so
 //   stop | go         everything
 //   mute              pictures only
 // Ends with its input.
@@ -78,6 +79,11 @@ class Rig {
             unsigned camera = 0;
             words >> camera;
             Change(camera, verb == "lose");
+        }
+        if (verb == "rename") {
+            std::size_t camera = 0;
+            words >> camera >> std::ws;
+            std::getline(words, names_.at(camera));
         }
         if (verb == "event")
             Send("PANORAMA_EVENT", EventBytes(events_++, 40, "rig", line.substr(6)));

@@ -91,11 +91,10 @@ class WebClient {
         }
     }
 
-    /// False when the server has closed, or says nothing for ten seconds.
-    bool Receive() {
-        constexpr int kPatience_ms = 10'000;
+    /// False when the server has closed, or says nothing for so long.
+    bool Receive(std::chrono::milliseconds patience = std::chrono::seconds(10)) {
         pollfd readable{socket_, POLLIN, 0};
-        if (poll(&readable, 1, kPatience_ms) <= 0) return false;
+        if (poll(&readable, 1, static_cast<int>(patience.count())) <= 0) return false;
         std::array<char, 65536> bytes{};
         const ssize_t count = recv(socket_, bytes.data(), bytes.size(), 0);
         if (count <= 0) return false;
