@@ -195,6 +195,11 @@ int Forward(const char* program, int argc, char** argv) {
     return RunProgram(SiblingProgram(program), std::vector<std::string>(argv + 2, argv + argc));
 }
 
+/// The same for one that runs until a signal comes.
+int Become(const char* program, int argc, char** argv) {
+    return BecomeProgram(SiblingProgram(program), std::vector<std::string>(argv + 2, argv + argc));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -203,6 +208,7 @@ int main(int argc, char** argv) {
     const std::string verb = argc > 1 ? argv[1] : "";
     if (verb == "view") return Forward("hitchview-view", argc, argv);
     if (verb == "eval") return Forward("hitchview-eval", argc, argv);
+    if (verb == "web") return Become("hitchview-web", argc, argv);
 
     CLI::App app{"Hitchview: one steady 360-degree panorama from the cameras of a tractor-trailer"};
     app.set_version_flag("--version", HITCHVIEW_VERSION);
@@ -226,6 +232,7 @@ int main(int argc, char** argv) {
     const CLI::App& export_verb = AddExport(app, exporting);
     app.add_subcommand("view", "Show the published panorama: hitchview view --help");
     app.add_subcommand("eval", "Measure recordings of views and panoramas: hitchview eval --help");
+    app.add_subcommand("web", "Show a running rig in a browser: hitchview web --help");
 
     try {
         app.parse(argc, argv);

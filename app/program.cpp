@@ -14,15 +14,30 @@ namespace {
 
 constexpr int kMachineFailed = 3;
 
+/// A program's path and arguments as the kernel takes them.
+class CommandLine {
+ public:
+    CommandLine(const std::filesystem::path& program, const std::vector<std::string>& arguments)
+        : texts_{program.string()} {
+        texts_.insert(texts_.end(), arguments.begin(), arguments.end());
+        for (std::string& text : texts_) argv_.push_back(text.data());
+        argv_.push_back(nullptr);
+    }
+
+    [[nodiscard]] const char* path() const { return texts_.front().c_str(); }
+    [[nodiscard]] char* const* argv() const { return argv_.data(); }
+
+ private:
+    std::vector<std::string> texts_;
+    std::vector<char*> argv_{};
+};
+
 /// The process, or -1.
 int Start(const std::filesystem::path& program, const std::vector<std::string>& arguments) {
-    std::string path = program.string();
-    std::vector<std::string> owned(arguments);
-    std::vector<char*> argv{path.data()};
-    for (std::string& argument : owned) argv.push_back(argument.data());
-    argv.push_back(nullptr);
+    const CommandLine command(program, arguments);
     pid_t process = -1;
-    if (posix_spawn(&process, path.c_str(), nullptr, nullptr, argv.data(), environ) != 0) return -1;
+    if (posix_spawn(&process, command.path(), nullptr, nullptr, command.argv(), environ) != 0)
+        return -1;
     return process;
 }
 
@@ -42,6 +57,12 @@ int RunProgram(const std::filesystem::path& program, const std::vector<std::stri
         if (errno != EINTR) return kMachineFailed;
     }
     return WIFEXITED(status) ? WEXITSTATUS(status) : kMachineFailed;
+}
+
+int BecomeProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments) {
+    const CommandLine command(program, arguments);
+    execv(command.path(), command.argv());
+    return kMachineFailed;
 }
 
 BackgroundProgram::BackgroundProgram(const std::filesystem::path& program,

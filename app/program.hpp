@@ -13,6 +13,10 @@ std::filesystem::path SiblingProgram(const std::string& name);
 /// Runs a program to its end. Its exit code; 3 if it could not be started or was killed.
 int RunProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments);
 
+/// Becomes that program: signals to this process are then the program's. Returns only if it could
+/// not be started: 3.
+int BecomeProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+
 /// A program that runs beside this one and is asked to end (SIGTERM) with it.
 class BackgroundProgram {
  public:

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "drivers/lcm_message_bounds.hpp"
 #include "drivers/lcm_message_reader.hpp"
 #include "lcmtypes/bot_core_image_t.h"
 #include "lcmtypes/hitchview_can_frame_t.h"
@@ -29,16 +30,6 @@ constexpr int kMostCameras = 32;
 constexpr std::int8_t kWorstQuality = HITCHVIEW_HITCH_ANGLE_T_QUALITY_STALE;
 constexpr std::int8_t kBestSeam = HITCHVIEW_PANORAMA_STATUS_T_SEAM_LOCKED;
 constexpr std::int8_t kLastKind = HITCHVIEW_CAN_FRAME_T_KIND_ERROR;
-
-/// Before the year 2286: what a candump log has digits for.
-bool IsEpoch(std::int64_t utime_us) {
-    return utime_us >= 0 && utime_us < 10'000'000'000'000'000;
-}
-
-/// No machine has been running for a century; sums and differences of such times cannot overflow.
-bool IsInstant(Instant time) {
-    return time >= Instant(0) && time < std::chrono::hours(24 * 365 * 100);
-}
 
 template <typename Int>
 std::optional<Int> Number(std::string_view text) {

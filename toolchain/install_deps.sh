@@ -8,14 +8,17 @@ set -euo pipefail
 packages=(
     g++ cmake ninja-build ccache pkg-config
     libeigen3-dev libopencv-dev libhwy-dev liblcm-dev liblcm-bin libyaml-cpp-dev libcli11-dev
-    nlohmann-json3-dev libturbojpeg0-dev libjpeg-dev
+    nlohmann-json3-dev libturbojpeg0-dev libjpeg-dev libmicrohttpd-dev
     libgtest-dev libgmock-dev libbenchmark-dev
-    iproute2 util-linux qemu-user ffmpeg
+    iproute2 util-linux qemu-user ffmpeg python3
 )
 
 # Taken where the release has libcamera 0.0.3 or later: Ubuntu 22.04 has not.
 # The second has what its pipelines load, vimc's among them.
 optional_packages=(libcamera-dev libcamera-ipa)
+
+# A browser for the tests of the page: Ubuntu has it as a snap only, which this script leaves alone.
+browser_packages=(chromium chromium-driver)
 
 is_installed() {
     [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
@@ -56,12 +59,19 @@ install_optional() {
     install_once "${optional_packages[@]}" || echo "install_deps.sh: goes on without ${optional_packages[*]}" >&2
 }
 
+install_browser() {
+    is_installed "${browser_packages[0]}" && is_installed "${browser_packages[1]}" && return
+    [[ "$(apt-cache policy "${browser_packages[1]}" 2>/dev/null)" == *Candidate:\ [0-9]* ]] || return 0
+    install_once "${browser_packages[@]}" || echo "install_deps.sh: goes on without ${browser_packages[*]}" >&2
+}
+
 missing=()
 for package in "${packages[@]}"; do
     is_satisfied "$package" || missing+=("$package")
 done
 if [[ ${#missing[@]} -eq 0 ]]; then
     install_optional
+    install_browser
     exit 0
 fi
 
@@ -77,3 +87,4 @@ done
 # Mirrors and networks hiccup: one more try, then the error stands.
 install_once "${names[@]}" || { sleep 5 && install_once "${names[@]}"; }
 install_optional
+install_browser

@@ -5,8 +5,10 @@
 
 #include <string>
 
+#include "drivers/lcm_health_message.hpp"
 #include "drivers/lcm_log_messages.hpp"
 #include "drivers/lcm_log_reader.hpp"
+#include "drivers/lcm_overlay_message.hpp"
 #include "hal/expect.hpp"
 
 namespace {
@@ -40,6 +42,8 @@ void ParseAsEverything(std::span<const std::uint8_t> message) {
     (void)drivers::ParseLoggedClock(message);
     (void)drivers::ParseLoggedEvent(message);
     (void)drivers::ParseLoggedRig(message);
+    (void)drivers::ParseLoggedHealth(message);
+    (void)drivers::ParseLoggedOverlay(message);
 }
 
 /// Events follow each other, and together with what was skipped they are the whole file.

@@ -11,6 +11,7 @@
 #include "lcmtypes/hitchview_rig_t.h"
 #include "tests/support/image_message.hpp"
 #include "tests/support/random_log.hpp"
+#include "tests/support/rig_messages.hpp"
 
 namespace hitchview::tests {
 namespace {
@@ -93,7 +94,9 @@ TEST(FuzzLcmLogTest, NoMutationOfALogBreaksAPromiseOfTheReader) {
 
 TEST(FuzzLcmLogTest, NoMutationOfAMessageReachesPastIt) {
     std::mt19937 random(2);
-    for (const LogBytes& message : {RigBytes(), CanBytes(), ImageMessage{}.Encode()}) {
+    for (const LogBytes& message :
+         {RigBytes(), CanBytes(), ImageMessage{}.Encode(),
+          HealthBytes(1, {.cameras = {"front", "left"}}), OverlayBytes(1, 64, 32, 0)}) {
         for (int i = 0; i < 2000; ++i) {
             LogBytes bytes = message;
             Mutate(bytes, random);

@@ -1,0 +1,118 @@
+#include "app/web_cameras.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <nlohmann/json.hpp>
+
+#include "app/web_json.hpp"
+#include "lcmtypes/hitchview_event_t.h"
+
+namespace hitchview::app {
+namespace {
+
+using hal::Instant;
+using std::chrono::milliseconds;
+
+/// Status comes with each panorama, health once a second.
+constexpr milliseconds kStatusHolds{1000};
+constexpr milliseconds kHealthHolds{2500};
+/// By then the status speaks of frames after the event.
+constexpr milliseconds kEventSettles{3000};
+
+bool IsRecent(std::optional<Instant> maybe_at, Instant now, milliseconds holds) {
+    return maybe_at && now - *maybe_at <= holds;
+}
+
+WebCamera CameraOf(const drivers::LoggedCameraHealth& health) {
+    return {.name = std::string(health.name),
+            .unit = std::string(health.unit),
+            .frames_per_s = health.frames_per_s,
+            .age_ms = health.age_ms,
+            .delivered = health.delivered,
+            .lost = health.lost,
+            .corrupted = health.corrupted,
+            .reopened = health.reopened,
+            .has_figures = true,
+            .shown = health.shown};
+}
+
+}  // namespace
+
+const char* ToString(WebCameraState state) {
+    switch (state) {
+        case WebCameraState::kUnknown:
+            return "unknown";
+        case WebCameraState::kLive:
+            return "live";
+        case WebCameraState::kLost:
+            return "lost";
+    }
+    return "unknown";
+}
+
+WebCameras::WebCameras(std::vector<WebCamera> cameras) : cameras_(std::move(cameras)) {
+    cameras_.resize(std::min(cameras_.size(), kMostCameras));
+}
+
+void WebCameras::TakeMissing(std::uint32_t cameras_missing, Instant now) {
+    const auto told = static_cast<std::size_t>(std::bit_width(cameras_missing));
+    while (cameras_.size() < told) {
+        cameras_.push_back({.name = "camera " + std::to_string(cameras_.size() + 1)});
+    }
+    missing_ = cameras_missing;
+    status_at_ = now;
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+        WebCamera& camera = cameras_[i];
+        const bool settled = !IsRecent(camera.lost_since, now, kEventSettles);
+        if (settled && (missing_ >> i & 1U) == 0) camera.lost_since.reset();
+    }
+}
+
+void WebCameras::TakeHealth(const drivers::LoggedHealth& health, Instant now) {
+    std::vector<WebCamera> cameras;
+    for (const auto& told : health.cameras) {
+        WebCamera camera = CameraOf(told);
+        const auto known = std::ranges::find(cameras_, camera.name, &WebCamera::name);
+        if (known != cameras_.end()) camera.lost_since = known->lost_since;
+        cameras.push_back(std::move(camera));
+    }
+    if (!cameras.empty()) cameras_ = std::move(cameras);
+    health_at_ = now;
+}
+
+void WebCameras::TakeEvent(const drivers::LoggedEvent& event, Instant now) {
+    const auto camera = std::ranges::find(cameras_, event.subject, &WebCamera::name);
+    if (camera == cameras_.end()) return;
+    if (event.code == HITCHVIEW_EVENT_T_CAMERA_LOST) camera->lost_since = now;
+    if (event.code == HITCHVIEW_EVENT_T_CAMERA_BACK) {
+        camera->lost_since.reset();
+        camera->shown = true;
+    }
+}
+
+bool WebCameras::IsLost(std::size_t camera, Instant now) const {
+    const bool missing = IsRecent(status_at_, now, kStatusHolds) && (missing_ >> camera & 1U) != 0;
+    const bool hidden = IsRecent(health_at_, now, kHealthHolds) && !cameras_[camera].shown;
+    return missing || hidden || cameras_[camera].lost_since;
+}
+
+WebCameraState WebCameras::State(std::size_t camera, Instant now) const {
+    HV_EXPECT(camera < cameras_.size());
+    const bool status = IsRecent(status_at_, now, kStatusHolds);
+    const bool health = IsRecent(health_at_, now, kHealthHolds);
+    if ((status || health) && IsLost(camera, now)) return WebCameraState::kLost;
+    // Health alone says that a camera lives only where no status has ever come.
+    return status || (health && !status_at_) ? WebCameraState::kLive : WebCameraState::kUnknown;
+}
+
+nlohmann::json WebCameras::ToJson(Instant now) const {
+    nlohmann::json list = nlohmann::json::array();
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+        nlohmann::json camera = CameraJson(cameras_[i]);
+        camera["state"] = ToString(State(i, now));
+        list.push_back(std::move(camera));
+    }
+    return list;
+}
+
+}  // namespace hitchview::app
