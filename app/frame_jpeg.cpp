@@ -31,12 +31,13 @@ int BlockRows(PixelFormat format) {
     return halved ? 2 * DCTSIZE : DCTSIZE;
 }
 
-/// No JPEG of such a frame has more bytes: twice its whole blocks, and the tables.
+/// No JPEG of such a frame has more bytes: 27 bits for each value of its whole blocks is what the
+/// longest codes take, and there are the tables.
 std::size_t LargestBytes(const hal::FrameFormat& format) {
     constexpr std::size_t kTables = 2048;
     const hal::FrameFormat padded{RoundUp(format.width_px, 16), RoundUp(format.height_px, 16),
                                   format.pixel_format, format.range};
-    return 2 * hal::FrameBytes(padded) + kTables;
+    return 4 * hal::FrameBytes(padded) + kTables;
 }
 
 /// Two pixels in four bytes to planes; `luma_at`: the byte of the first luma, 0 or 1.
