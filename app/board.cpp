@@ -1,11 +1,14 @@
 #include "app/board.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
 #include "app/camera_ahead.hpp"
 #include "app/live_camera_options.hpp"
 #include "app/log_replay.hpp"
+#include "app/publish_options.hpp"
+#include "app/tapped_camera.hpp"
 #include "drivers/candump_can_bus.hpp"
 #include "drivers/lcm_log_camera.hpp"
 #include "drivers/lcm_log_can_bus.hpp"
@@ -68,15 +71,17 @@ drivers::SimulationOptions Overridden(drivers::SimulationOptions options,
     return options;
 }
 
-/// Buffers that a live camera is given. `slots`: frames that the program may hold.
-int BuffersOf(const LiveCameraConfig& live, int slots) {
+/// Buffers that a live camera is given. `slots`: frames that the program may hold; `taps`: of these
+/// for its recorder, which a number that the rig file states does not count.
+int BuffersOf(const LiveCameraConfig& live, int slots, int taps) {
     constexpr int kWithTheDevice = 3;
-    return live.buffers > 0 ? live.buffers : slots + kWithTheDevice;
+    constexpr int kMost = 32;
+    return live.buffers > 0 ? std::min(live.buffers + taps, kMost) : slots + kWithTheDevice;
 }
 
 hal::Checked<std::unique_ptr<hal::Camera>> OpenLive(const CameraConfig& camera, double rate_hz,
-                                                    int slots) {
-    const int buffers = BuffersOf(camera.live, slots);
+                                                    int slots, int taps) {
+    const int buffers = BuffersOf(camera.live, slots, taps);
     if (camera.source == CameraConfig::Source::kLibcamera) {
         return drivers::OpenLibcamera(
             LibcameraOptionsOf(camera.name, camera.live, rate_hz, buffers));
@@ -98,16 +103,18 @@ int SimulatedIndex(const drivers::SimulatedRig& rig, algo::Unit unit, const std:
 
 }  // namespace
 
-Board::Board() : clock_(std::make_unique<drivers::SteadyClock>()) {}
+Board::Board(const Options& options)
+    : options_(options), clock_(std::make_unique<drivers::SteadyClock>()) {}
 Board::~Board() = default;
 
-hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, int held_frames) {
-    std::unique_ptr<Board> board(new Board);
+hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, const Options& options) {
+    std::unique_ptr<Board> board(new Board(options));
+    const int slots = options.held_frames + kFramesAhead + (options.recorded ? FrameTap::kHeld : 0);
     if (config.period) board->period_ = *config.period;
     if (const auto simulated = board->OpenSimulation(config); !simulated) return simulated.error();
     for (const algo::Unit unit : algo::kUnits) {
         for (const CameraConfig& camera : config.units[unit].cameras) {
-            const auto opened = board->OpenCamera(config, unit, camera, held_frames + kFramesAhead);
+            const auto opened = board->OpenCamera(config, unit, camera, slots);
             if (!opened) return opened.error();
         }
     }
@@ -155,7 +162,7 @@ hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit un
         }
         auto rendered =
             std::make_unique<drivers::SimulatedCamera>(*simulation_, index, hal::Instant{0}, slots);
-        cameras_[unit].push_back(std::make_unique<CameraAhead>(std::move(rendered), camera.name));
+        Add(unit, std::make_unique<CameraAhead>(std::move(rendered), camera.name));
         return hal::Done{};
     }
     // Where the rig file states the pace, the frames were captured at it.
@@ -165,17 +172,27 @@ hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit un
     if (!replay) return config.file.string() + ": camera " + camera.name + ": " + replay.error();
     if (period_.count() == 0)
         period_ = hal::Instant(static_cast<std::int64_t>(1e9 / (*replay)->rate_hz()));
-    cameras_[unit].push_back(std::move(*replay));
+    Add(unit, std::move(*replay));
     return hal::Done{};
+}
+
+hal::Camera& Board::Add(algo::Unit unit, std::unique_ptr<hal::Camera> camera) {
+    if (options_.recorded) {
+        auto tapped = std::make_unique<TappedCamera>(std::move(camera));
+        taps_.push_back(&tapped->tap());
+        camera = std::move(tapped);
+    }
+    return *cameras_[unit].emplace_back(std::move(camera));
 }
 
 hal::Checked<hal::Done> Board::OpenLiveCamera(const RigConfig& config, algo::Unit unit,
                                               const CameraConfig& camera, int slots) {
     if (period_.count() == 0) period_ = kDefaultPeriod;
-    auto opened = OpenLive(camera, 1e9 / static_cast<double>(period_.count()), slots);
+    const int taps = options_.recorded ? FrameTap::kHeld : 0;
+    auto opened = OpenLive(camera, 1e9 / static_cast<double>(period_.count()), slots, taps);
     if (!opened) return config.file.string() + ": camera " + camera.name + ": " + opened.error();
-    live_cameras_.push_back({opened->get(), camera.name, unit, cameras_[unit].size()});
-    cameras_[unit].push_back(std::move(*opened));
+    const std::size_t index = cameras_[unit].size();
+    live_cameras_.push_back({&Add(unit, std::move(*opened)), camera.name, unit, index});
     return hal::Done{};
 }
 
@@ -186,14 +203,14 @@ void Board::OpenLogCamera(const RigConfig& config, algo::Unit unit, const Camera
         .kind = {.format = camera.log.format, .compressed = camera.log.compressed},
         .slots = slots});
     drivers::LcmLogCamera* const source = logged.get();
-    auto ahead = std::make_unique<CameraAhead>(std::move(logged), camera.name);
+    const std::size_t index = cameras_[unit].size();
+    hal::Camera& ahead = Add(unit, std::make_unique<CameraAhead>(std::move(logged), camera.name));
     log_cameras_.push_back({.config = camera.log,
                             .name = camera.name,
                             .source = source,
-                            .camera = ahead.get(),
+                            .camera = &ahead,
                             .unit = unit,
-                            .index_in_unit = cameras_[unit].size()});
-    cameras_[unit].push_back(std::move(ahead));
+                            .index_in_unit = index});
 }
 
 void Board::StartSets(const RigConfig& config) {
@@ -232,10 +249,11 @@ hal::Checked<hal::Done> Board::OpenCanBus(const RigConfig& config) {
 
 hal::Checked<hal::Done> Board::OpenSocketCan(const RigConfig& config) {
     const HitchAngleSignal& signal = config.can->hitch_angle;
-    auto bus =
-        drivers::SocketCanBus::Open({.interface = config.can->interface,
-                                     .ids = {{.id = signal.id, .extended = signal.IsExtended()}},
-                                     .receive_buffer_bytes = config.can->receive_buffer_bytes});
+    drivers::SocketCanOptions options{.interface = config.can->interface,
+                                      .record = options_.recorded,
+                                      .receive_buffer_bytes = config.can->receive_buffer_bytes};
+    if (!options_.recorded) options.ids = {{.id = signal.id, .extended = signal.IsExtended()}};
+    auto bus = drivers::SocketCanBus::Open(options);
     if (!bus) return config.file.string() + ": can.source.socketcan: " + bus.error();
     if (!(*bus)->remark().empty()) std::fprintf(stderr, "%s\n", (*bus)->remark().c_str());
     can_bus_ = std::move(*bus);
@@ -253,13 +271,7 @@ CameraFormats Board::formats() const {
 
 hal::Checked<std::unique_ptr<hal::Publisher>> Board::OpenPublisher(const PublishConfig& config) {
     auto publisher = drivers::LcmPublisher::Create(
-        {.url = config.url,
-         .messages = {.panorama_channel = config.panorama_channel,
-                      .status_channel = config.status_channel,
-                      .hitch_angle_channel = config.hitch_angle_channel,
-                      .event_channel = config.event_channel,
-                      .max_image_bytes = config.max_bytes}},
-        *clock_);
+        {.url = config.url, .messages = EncoderOptionsOf(config)}, *clock_);
     if (!publisher) return publisher.error();
     return std::unique_ptr<hal::Publisher>(std::move(*publisher));
 }

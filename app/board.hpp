@@ -5,6 +5,7 @@
 
 #include "app/config.hpp"
 #include "app/event_queue.hpp"
+#include "app/frame_tap.hpp"
 #include "app/live_frame_synchronizer.hpp"
 #include "app/recorded_frame_synchronizer.hpp"
 #include "app/rig_geometry.hpp"
@@ -26,8 +27,13 @@ struct LogCamera;
 /// sees interfaces only.
 class Board {
  public:
-    /// Opens what the configuration names. `held_frames`: frame sets that the program keeps lent.
-    static hal::Checked<std::unique_ptr<Board>> Open(const RigConfig& config, int held_frames);
+    struct Options {
+        int held_frames = 2;    ///< frame sets that the program keeps lent
+        bool recorded = false;  ///< cameras have taps, and a live CAN bus delivers all its frames
+    };
+    /// Opens what the configuration names.
+    static hal::Checked<std::unique_ptr<Board>> Open(const RigConfig& config,
+                                                     const Options& options);
     ~Board();
     Board(const Board&) = delete;
     Board& operator=(const Board&) = delete;
@@ -48,11 +54,13 @@ class Board {
     /// Time from one frame set to the next.
     [[nodiscard]] hal::Instant period() const { return period_; }
     [[nodiscard]] CameraFormats formats() const;
+    /// Of each camera, in the order of the bits of cameras_missing; empty unless it is recorded.
+    [[nodiscard]] const std::vector<FrameTap*>& taps() const { return taps_; }
 
     hal::Checked<std::unique_ptr<hal::Publisher>> OpenPublisher(const PublishConfig& config);
 
  private:
-    Board();
+    explicit Board(const Options& options);
     hal::Checked<hal::Done> OpenSimulation(const RigConfig& config);
     hal::Checked<hal::Done> OpenCamera(const RigConfig& config, algo::Unit unit,
                                        const CameraConfig& camera, int slots);
@@ -60,13 +68,16 @@ class Board {
                                            const CameraConfig& camera, int slots);
     void OpenLogCamera(const RigConfig& config, algo::Unit unit, const CameraConfig& camera,
                        int slots);
+    hal::Camera& Add(algo::Unit unit, std::unique_ptr<hal::Camera> camera);
     void StartSets(const RigConfig& config);
     hal::Checked<hal::Done> OpenCanBus(const RigConfig& config);
     hal::Checked<hal::Done> OpenSocketCan(const RigConfig& config);
 
+    const Options options_;
     std::unique_ptr<hal::Clock> clock_;
     std::unique_ptr<drivers::SimulatedRig> simulation_;
     Cameras cameras_;
+    std::vector<FrameTap*> taps_;
     std::vector<LiveCamera> live_cameras_;
     std::vector<LogCamera> log_cameras_;
     std::unique_ptr<hal::CanBus> can_bus_;

@@ -142,6 +142,7 @@ RigConfig ReadRig(YamlMap& root, ConfigContext& context) {
         config.can->source != CanConfig::Source::kSocketCan)
         can.Refuse("a map with the source {socketcan: NAME} beside live cameras");
     config.publish = ReadPublish(root["publish"]);
+    config.record = ReadRecord(root["record"], context);
     root.Finish();
     return config;
 }

@@ -218,6 +218,28 @@ struct PublishConfig {
     int max_bytes = 150000;  ///< of one compressed panorama. [20000, 4000000]
 };
 
+/// How drives are recorded.
+struct RecordConfig {
+    enum class Format { kJpeg, kRaw };
+    enum class Trigger {
+        kSignal,      ///< SIGUSR1
+        kCameraLost,  ///< that, or a camera that is lost
+    };
+
+    std::filesystem::path folder{};  ///< empty: nothing is recorded
+    int segment_s = 60;              ///< length of a file. [1, 3600]
+    int quota_mb = 0;                ///< of all files, in 10^6 bytes; 0: none. [0, 10^7]
+    int min_free_mb = 500;           ///< that recordings leave free. [0, 10^7]
+    int pre_trigger_s = 0;    ///< kept in memory until a trigger; 0: all is written. [0, 600]
+    int after_trigger_s = 0;  ///< 0: for ever; with pre_trigger_s only. [0, 86400]
+    Trigger trigger = Trigger::kSignal;
+    int memory_mb = 64;             ///< for what waits to be written. [8, 16384]
+    Format format = Format::kJpeg;  ///< of the cameras' frames
+    int quality = 85;               ///< of JPEG. [30, 100]
+    int every = 1;                  ///< each so many-th frame of the cameras. [1, 1000]
+    int threads = 2;                ///< that compress. [1, 8]
+};
+
 /// What a run at the cameras' pace asks of the system.
 struct RealTimeConfig {
     enum class LockMemory {
@@ -255,6 +277,7 @@ struct RigConfig {
     std::optional<CanConfig> can{};
     PublishConfig publish{};
     LogConfig log{};  ///< of cameras and a CAN bus whose source is kLog
+    RecordConfig record{};
 
     /// Its cameras run at their own pace: all of a rig's do, or none.
     [[nodiscard]] bool IsLive() const {

@@ -40,5 +40,7 @@ StitchingConfig ReadStitching(const calib::YamlValue& value);
 /// In config_can.cpp. Reads the DBC file too, if there is one.
 std::optional<CanConfig> ReadCan(const calib::YamlValue& value, const ConfigContext& context);
 PublishConfig ReadPublish(const calib::YamlValue& value);
+/// In config_record.cpp.
+RecordConfig ReadRecord(const calib::YamlValue& value, const ConfigContext& context);
 
 }  // namespace hitchview::app

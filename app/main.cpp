@@ -10,6 +10,7 @@
 #include "app/demo_verb.hpp"
 #include "app/log_arguments.hpp"
 #include "app/program.hpp"
+#include "app/record_verb.hpp"
 #include "app/replay_verb.hpp"
 #include "app/scenario_verb.hpp"
 
@@ -23,6 +24,12 @@ std::atomic<bool> stop{false};
 
 void Stop(int) {
     stop = true;
+}
+
+std::atomic<bool> trigger{false};
+
+void Trigger(int) {
+    trigger = true;
 }
 
 void AddRunOptions(CLI::App& verb, ReplayOptions& options) {
@@ -108,6 +115,8 @@ void AddRun(CLI::App& app, ReplayOptions& options) {
     AddRunOptions(verb, options);
     options.run.realtime = true;
     options.run.publish = true;
+    options.run.record = true;
+    options.run.trigger = &trigger;
 }
 
 CLI::App& AddScenarios(CLI::App& app, ScenariosOptions& options) {
@@ -205,6 +214,7 @@ int Become(const char* program, int argc, char** argv) {
 int main(int argc, char** argv) {
     std::signal(SIGINT, Stop);
     std::signal(SIGTERM, Stop);
+    std::signal(SIGUSR1, Trigger);
     const std::string verb = argc > 1 ? argv[1] : "";
     if (verb == "view") return Forward("hitchview-view", argc, argv);
     if (verb == "eval") return Forward("hitchview-eval", argc, argv);
@@ -220,6 +230,8 @@ int main(int argc, char** argv) {
     const CLI::App& replay_verb = AddReplay(app, replay);
     ReplayOptions run;
     AddRun(app, run);
+    RecordOptions record;
+    const CLI::App& record_verb = AddRecord(app, record);
     ScenariosOptions scenarios;
     const CLI::App& scenarios_verb = AddScenarios(app, scenarios);
     BenchOptions bench;
@@ -241,6 +253,7 @@ int main(int argc, char** argv) {
     }
     if (demo_verb.parsed()) return DemoVerb(demo, stop);
     if (replay_verb.parsed()) return ReplayVerb(replay, stop);
+    if (record_verb.parsed()) return RecordVerb(record, stop, trigger);
     if (scenarios_verb.parsed()) return ScenariosVerb(scenarios, stop);
     if (bench_verb.parsed()) return BenchVerb(bench, stop);
     if (cameras_verb.parsed()) return CamerasVerb(cameras);

@@ -110,7 +110,14 @@ void PanoramaLoop::CountDeadline() {
 }
 
 bool PanoramaLoop::Limited(std::uint64_t taken) const {
-    return options_.frames && taken >= static_cast<std::uint64_t>(*options_.frames);
+    if (options_.frames && taken >= static_cast<std::uint64_t>(*options_.frames)) return true;
+    if (!options_.duration) return false;
+    Board& board = parts_.board;
+    const hal::Instant done = board.live() != nullptr
+                                  ? board.clock().Now() - deadlines_.start()
+                                  : static_cast<std::int64_t>(taken) * board.period();
+    // A period that is written in milliseconds is rounded.
+    return done + board.period() / 2 > *options_.duration;
 }
 
 hal::Checked<hal::Done> PanoramaLoop::Show(const ShownPanorama& shown, const ShownHook& hook) {

@@ -68,6 +68,7 @@ void PanoramaPublisher::Work() {
         SendHitchAngles();
         SendEvents();
     }
+    SendEvents();  // what happened while the last one was sent
 }
 
 void PanoramaPublisher::Send(Filled& filled) {

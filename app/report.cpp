@@ -186,6 +186,21 @@ json Can(const std::optional<CanSummary>& can) {
             {"disconnections", can->disconnections}};
 }
 
+/// Null where nothing was recorded.
+json Recording(const std::optional<RecordingSummary>& recording) {
+    if (!recording) return nullptr;
+    json cameras = json::object();
+    for (const FrameCounts& camera : recording->cameras)
+        cameras[camera.name] = {{"recorded", camera.recorded}, {"dropped", camera.dropped}};
+    return {{"files", recording->written.files},
+            {"bytes", recording->written.bytes},
+            {"events", recording->written.events},
+            {"dropped", recording->dropped},
+            {"memory_bytes", recording->memory_bytes},
+            {"most_used_bytes", recording->most_used_bytes},
+            {"cameras", cameras}};
+}
+
 }  // namespace
 
 json MakeReport(const RunSummary& run, const json& quality) {
@@ -220,6 +235,7 @@ json MakeReport(const RunSummary& run, const json& quality) {
     }
     report["articulation"] = Articulation(run);
     report["can"] = Can(run.can);
+    report["recording"] = Recording(run.recording);
     FillIn(quality, report);
     return report;
 }

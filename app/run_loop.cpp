@@ -129,6 +129,7 @@ void Complete(const RigConfig& config, Board& board, const RunOutputs& outputs,
     summary.events = board.events().counts();
     summary.publishing = outputs.times();
     summary.can = outputs.can();
+    summary.recording = outputs.recording();
     for (const algo::Unit unit : algo::kUnits) {
         for (std::size_t i = 0; i < config.units[unit].cameras.size(); ++i)
             summary.pools.push_back(
@@ -162,8 +163,9 @@ hal::Checked<RunSummary> RunRig(const RigConfig& rig_config, const RunOptions& o
         if (!prepared) return prepared.error();
     }
     const algo::UnifiedVertexMotionOptions motion_options = MotionOptions(config, options);
-    const int held = motion_options.lookahead_frames + 2;
-    auto board = Board::Open(config, held);
+    const Board::Options opened{.held_frames = motion_options.lookahead_frames + 2,
+                                .recorded = options.record && !config.record.folder.empty()};
+    auto board = Board::Open(config, opened);
     if (!board) return board.error();
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
     if (!rig) return rig.error();
@@ -176,11 +178,11 @@ hal::Checked<RunSummary> RunRig(const RigConfig& rig_config, const RunOptions& o
     Pipeline pipeline(rig.value(), *motion.any, workers);
     if (const auto primed = Prime(**board, pipeline, stop); !primed) return primed.error();
     // A recording starts again from its first frame.
-    if ((*board)->live() == nullptr) board = Board::Open(config, held);
+    if ((*board)->live() == nullptr) board = Board::Open(config, opened);
     if (board && motion.offline != nullptr) {
         if (const auto learnt = Learn(**board, *motion.offline, options, workers, stop); !learnt)
             return learnt.error();
-        board = Board::Open(config, held);
+        board = Board::Open(config, opened);
     }
     if (!board) return board.error();
 

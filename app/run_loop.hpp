@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "app/heap_calls.hpp"
 #include "app/live_frame_synchronizer.hpp"
 #include "app/pipeline.hpp"
+#include "app/recorder.hpp"
 #include "app/resources.hpp"
 
 namespace hitchview::app {
@@ -23,6 +25,8 @@ using ProgressHook = std::function<void(const char* step, std::uint64_t frames)>
 struct RunOptions {
     std::filesystem::path out{};  ///< folder for report and videos; empty: none are written
     std::optional<int> frames{};  ///< at most so many frame sets
+    /// At most so long: of time for live cameras, otherwise of the recording or simulation.
+    std::optional<std::chrono::nanoseconds> duration{};
     std::optional<int> lookahead_frames{};  ///< instead of the rig file's
     std::optional<int> workers{};           ///< instead of the rig file's
     bool offline =
@@ -34,7 +38,9 @@ struct RunOptions {
     bool write_video = false;  ///< out/panorama.avi
     bool write_views = false;  ///< out/tractor.avi, out/trailer.avi
     bool publish = false;      ///< over LCM
-    bool trap_alloc = false;   ///< the first heap call after READY stops the program
+    bool record = false;       ///< where the rig file says so
+    std::atomic<bool>* trigger = nullptr;  ///< of the recorder; see RecorderOptions
+    bool trap_alloc = false;               ///< the first heap call after READY stops the program
 };
 
 /// The articulation over a run, as the images told it.
@@ -87,6 +93,7 @@ struct RunSummary {
     algo::PerUnit<int> cameras;
     MemorySummary memory{};
     std::optional<CanSummary> can{};  ///< when the run has ended; empty where no bus was read
+    std::optional<RecordingSummary> recording{};  ///< when the run has ended
     bool ring = false;
     EventCounts events{};               ///< when the run has ended
     std::optional<LiveSummary> live{};  ///< of cameras that run at their own pace

@@ -2,6 +2,8 @@
 
 #include "app/board.hpp"
 #include "app/playback_speed.hpp"
+#include "app/record_setup.hpp"
+#include "app/tee_publisher.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -61,9 +63,11 @@ hal::Checked<std::unique_ptr<RunOutputs>> RunOutputs::Open(const RigConfig& conf
     outputs->speed_ = options.speed;
     if (const auto videos = outputs->OpenVideos(options, run, format); !videos)
         return videos.error();
-    if (const auto network = outputs->OpenNetwork(config, options, board, run, format); !network) {
-        return network.error();
-    }
+    if (const auto recording = outputs->OpenRecording(config, options, board, run); !recording)
+        return recording.error();
+    if (const auto publisher = outputs->OpenPublisher(config, options, board); !publisher)
+        return publisher.error();
+    if (outputs->receivers_) outputs->StartPublishing(config, options, board, run, format);
     return outputs;
 }
 
@@ -88,14 +92,38 @@ hal::Checked<hal::Done> RunOutputs::OpenVideos(const RunOptions& options, const 
     return hal::Done{};
 }
 
-hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const RunOptions& options,
-                                                Board& board, const RunSummary& run,
-                                                const hal::FrameFormat& format) {
+hal::Checked<hal::Done> RunOutputs::OpenRecording(const RigConfig& config,
+                                                  const RunOptions& options, Board& board,
+                                                  const RunSummary& run) {
+    auto recorder = OpenRecorder(config, options, run, board);
+    if (!recorder) return recorder.error();
+    recorder_ = std::move(*recorder);
+    if (!recorder_) return hal::Done{};
+    auto receiver = OpenRecordingPublisher(config.publish, board.clock(), *recorder_);
+    if (!receiver) return receiver.error();
+    receivers_ = std::move(*receiver);
+    return hal::Done{};
+}
+
+hal::Checked<hal::Done> RunOutputs::OpenPublisher(const RigConfig& config,
+                                                  const RunOptions& options, Board& board) {
     if (!options.publish) return hal::Done{};
     auto network = board.OpenPublisher(config.publish);
     if (!network) return network.error();
-    network_ = std::move(*network);
+    if (receivers_)
+        receivers_ = std::make_unique<TeePublisher>(std::move(*network), std::move(receivers_));
+    else
+        receivers_ = std::move(*network);
+    return hal::Done{};
+}
+
+void RunOutputs::StartPublishing(const RigConfig& config, const RunOptions& options, Board& board,
+                                 const RunSummary& run, const hal::FrameFormat& format) {
     can_bus_ = board.can_bus();
+    if (can_bus_ != nullptr && recorder_) {
+        recorded_can_ = std::make_unique<RecordedCanBus>(*can_bus_, recorder_->intake());
+        can_bus_ = recorded_can_.get();
+    }
     if (can_bus_ != nullptr) {
         const bool live = board.is_can_live();
         telemetry_ = std::make_unique<TelemetryThread>(
@@ -103,7 +131,7 @@ hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const R
             TelemetryOptions{.paced = !live, .clock = live ? &board.clock() : nullptr});
     }
     publisher_ = std::make_unique<PanoramaPublisher>(
-        *network_, board.clock(),
+        *receivers_, board.clock(),
         SentBeside{.telemetry = telemetry_.get(), .events = &board.events()}, format,
         PanoramaPublisherOptions{.jpeg = {.budget_bytes = config.publish.max_bytes,
                                           .highest_quality = config.publish.jpeg_quality},
@@ -112,12 +140,12 @@ hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const R
                                  .speed = options.speed,
                                  .live_telemetry = board.is_can_live(),
                                  .threads = options.workers.value_or(config.workers)});
-    return hal::Done{};
 }
 
 void RunOutputs::Start(hal::Instant start) {
     start_ = start;
     if (publisher_) publisher_->StartRecording(start);
+    if (recorder_) recorder_->Start(start);
 }
 
 hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& pipeline,
@@ -162,8 +190,15 @@ std::optional<CanSummary> RunOutputs::can() const {
                       .disconnections = bus.disconnections};
 }
 
+std::optional<RecordingSummary> RunOutputs::recording() const {
+    if (!recorder_) return std::nullopt;
+    return recorder_->Summarise();
+}
+
 hal::Checked<hal::Done> RunOutputs::Finish() {
+    if (recorder_) recorder_->Stop("the program ends");
     if (publisher_) publisher_->Finish();
+    if (recorder_) recorder_->Finish();
     for (VideoWriter* video : {panorama_.get(), views_[algo::Unit::kTractor].get(),
                                views_[algo::Unit::kTrailer].get()}) {
         if (video == nullptr) continue;

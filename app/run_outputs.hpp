@@ -5,6 +5,8 @@
 
 #include "app/panorama_publisher.hpp"
 #include "app/pipeline.hpp"
+#include "app/recorded_can_bus.hpp"
+#include "app/recorder.hpp"
 #include "app/run_loop.hpp"
 #include "app/telemetry_thread.hpp"
 #include "app/video_writer.hpp"
@@ -13,7 +15,7 @@ namespace hitchview::app {
 
 class Board;
 
-/// Where the panoramas of a run go: videos and the network.
+/// Where the panoramas of a run go: videos, the network and a recording.
 class RunOutputs {
  public:
     static hal::Checked<std::unique_ptr<RunOutputs>> Open(const RigConfig& config,
@@ -34,6 +36,8 @@ class RunOutputs {
     }
     /// Of the CAN bus so far; empty where none is read.
     [[nodiscard]] std::optional<CanSummary> can() const;
+    /// After Finish; empty where nothing was recorded.
+    [[nodiscard]] std::optional<RecordingSummary> recording() const;
     void AddPools(std::vector<PoolSummary>& pools) const;
     [[nodiscard]] std::uint64_t dropped() const { return publisher_ ? publisher_->dropped() : 0; }
 
@@ -41,9 +45,12 @@ class RunOutputs {
     RunOutputs() = default;
     hal::Checked<hal::Done> OpenVideos(const RunOptions& options, const RunSummary& run,
                                        const hal::FrameFormat& format);
-    hal::Checked<hal::Done> OpenNetwork(const RigConfig& config, const RunOptions& options,
-                                        Board& board, const RunSummary& run,
-                                        const hal::FrameFormat& format);
+    hal::Checked<hal::Done> OpenRecording(const RigConfig& config, const RunOptions& options,
+                                          Board& board, const RunSummary& run);
+    hal::Checked<hal::Done> OpenPublisher(const RigConfig& config, const RunOptions& options,
+                                          Board& board);
+    void StartPublishing(const RigConfig& config, const RunOptions& options, Board& board,
+                         const RunSummary& run, const hal::FrameFormat& format);
     void Publish(const ShownPanorama& shown, const RunSummary& run);
 
     /// Of a moment of the cameras' time.
@@ -53,7 +60,9 @@ class RunOutputs {
     double speed_ = 1;  ///< of the cameras' time
     std::unique_ptr<VideoWriter> panorama_;
     algo::PerUnit<std::unique_ptr<VideoWriter>> views_;
-    std::unique_ptr<hal::Publisher> network_;
+    std::unique_ptr<Recorder> recorder_;
+    std::unique_ptr<hal::Publisher> receivers_;  ///< display units, the recording, or both
+    std::unique_ptr<RecordedCanBus> recorded_can_;
     hal::CanBus* can_bus_ = nullptr;
     std::unique_ptr<TelemetryThread> telemetry_;
     std::unique_ptr<PanoramaPublisher> publisher_;

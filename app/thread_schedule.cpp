@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 #include <sched.h>
+#include <sys/resource.h>
 
 #include <cstring>
 #include <string>
@@ -42,6 +43,12 @@ hal::Checked<hal::Done> Apply(const ThreadSchedule& schedule) {
     }
     if (refusals.empty()) return hal::Done{};
     return refusals;
+}
+
+void RunInBackground() {
+    constexpr int kNice = 10;
+    // With 0 and threads of Linux this is the calling thread alone; to become nicer needs no right.
+    setpriority(PRIO_PROCESS, 0, kNice);
 }
 
 void NameThisThread(const std::string& name) {

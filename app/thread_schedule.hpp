@@ -19,6 +19,9 @@ struct ThreadSchedule {
 /// tried; the error says what the kernel refused and what lets it through.
 hal::Checked<hal::Done> Apply(const ThreadSchedule& schedule);
 
+/// The calling thread gets the CPU when threads of the usual scheduling leave it some.
+void RunInBackground();
+
 /// At most 15 characters are kept, as the kernel does.
 void NameThisThread(const std::string& name);
 

@@ -34,6 +34,10 @@ static_assert(int(Quality::kImplausible) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_IMPL
 static_assert(int(Quality::kStale) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_STALE);
 static_assert(int(hal::EventCode::kCameraLost) == HITCHVIEW_EVENT_T_CAMERA_LOST);
 static_assert(int(hal::EventCode::kCameraBack) == HITCHVIEW_EVENT_T_CAMERA_BACK);
+static_assert(int(hal::EventCode::kRecordingStarted) == HITCHVIEW_EVENT_T_RECORDING_STARTED);
+static_assert(int(hal::EventCode::kRecordingStopped) == HITCHVIEW_EVENT_T_RECORDING_STOPPED);
+static_assert(int(hal::EventCode::kRecordingFailed) == HITCHVIEW_EVENT_T_RECORDING_FAILED);
+static_assert(int(hal::EventCode::kRecordingDropped) == HITCHVIEW_EVENT_T_RECORDING_DROPPED);
 
 /// Room for everything in an image message that is not its JPEG.
 constexpr int kEnvelopeBytes = 1024;

@@ -66,15 +66,29 @@ void CutBack(int descriptor, std::uint64_t bytes) {
 
 hal::Checked<std::unique_ptr<LcmLogWriter>> LcmLogWriter::Create(
     const std::filesystem::path& file) {
-    constexpr mode_t kReadableByAll = 0644;
-    const int descriptor =
-        open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kReadableByAll);
-    if (descriptor < 0) return file.string() + ": cannot be written: " + std::strerror(errno);
-    return std::unique_ptr<LcmLogWriter>(new LcmLogWriter(descriptor));
+    auto writer = std::make_unique<LcmLogWriter>();
+    if (!writer->Open(file.c_str()))
+        return file.string() + ": cannot be written: " + std::strerror(errno);
+    return writer;
 }
 
 LcmLogWriter::~LcmLogWriter() {
-    close(descriptor_);
+    Close();
+}
+
+Result<Done> LcmLogWriter::Open(const char* file) {
+    constexpr mode_t kReadableByAll = 0644;
+    Close();
+    descriptor_ = open(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kReadableByAll);
+    if (descriptor_ < 0) return Error::kFailed;
+    return Done{};
+}
+
+void LcmLogWriter::Close() {
+    if (descriptor_ >= 0) close(descriptor_);
+    descriptor_ = -1;
+    bytes_ = 0;
+    events_ = 0;
 }
 
 Result<Done> LcmLogWriter::Append(std::int64_t utime_us, std::string_view channel,

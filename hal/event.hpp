@@ -10,9 +10,18 @@ namespace hitchview::hal {
 
 /// What happened. The numbers stand on the wire: see lcmtypes/hitchview_event_t.lcm, which says how
 /// they are given out.
-enum class EventCode : std::int16_t { kCameraLost = 1, kCameraBack = 2 };
+enum class EventCode : std::int16_t {
+    kCameraLost = 1,
+    kCameraBack = 2,
+    kRecordingStarted = 80,
+    kRecordingStopped = 81,
+    kRecordingFailed = 82,
+    kRecordingDropped = 83,
+};
 
-inline constexpr std::array kEventCodes{EventCode::kCameraLost, EventCode::kCameraBack};
+inline constexpr std::array kEventCodes{EventCode::kCameraLost,       EventCode::kCameraBack,
+                                        EventCode::kRecordingStarted, EventCode::kRecordingStopped,
+                                        EventCode::kRecordingFailed,  EventCode::kRecordingDropped};
 
 constexpr const char* ToString(EventCode code) {
     switch (code) {
@@ -20,6 +29,14 @@ constexpr const char* ToString(EventCode code) {
             return "camera_lost";
         case EventCode::kCameraBack:
             return "camera_back";
+        case EventCode::kRecordingStarted:
+            return "recording_started";
+        case EventCode::kRecordingStopped:
+            return "recording_stopped";
+        case EventCode::kRecordingFailed:
+            return "recording_failed";
+        case EventCode::kRecordingDropped:
+            return "recording_dropped";
     }
     return "unknown";
 }
@@ -31,7 +48,7 @@ using EventText = FixedText<96>;
 struct Event {
     EventCode code = EventCode::kCameraLost;
     Instant when{};
-    FixedText<64> subject{};  ///< whom it befell: the name of a camera
+    FixedText<64> subject{};  ///< whom it befell: a camera's name, a recording's file
     EventText text{};
 };
 

@@ -331,7 +331,29 @@ INSTANTIATE_TEST_SUITE_P(
                 "rig.yaml:6: publish.status_channel is PANORAMA, must be a channel of its own"},
         BadFile{kSimulated + "publish: {status_channel: a/b}\n",
                 "rig.yaml:6: publish.status_channel is a/b, must be an LCM channel: letters, "
-                "digits and _, at most 63 characters"}));
+                "digits and _, at most 63 characters"},
+        BadFile{kSimulated + "record: {segment_s: 0}\n",
+                "rig.yaml:6: record.segment_s is 0, must be 1 to 3600"},
+        BadFile{kSimulated + "record: {format: png}\n",
+                "rig.yaml:6: record.format is png, must be jpeg or raw"},
+        BadFile{kSimulated + "record: {trigger: camera_lost}\n",
+                "rig.yaml:6: record.trigger is camera_lost, must be absent without "
+                "pre_trigger_s"}));
+
+TEST_F(ConfigTest, TheFolderOfRecordingsStandsRelativeToTheFile) {
+    const auto config = Load(kSimulated +
+                             "record: {folder: drives, pre_trigger_s: 30, after_trigger_s: 60, "
+                             "trigger: camera_lost, format: raw, every: 3}\n");
+    ASSERT_TRUE(config) << config.error();
+    const RecordConfig& record = config.value().record;
+    EXPECT_EQ(record.folder, folder_.path() + "/drives");
+    EXPECT_EQ(record.pre_trigger_s, 30);
+    EXPECT_EQ(record.after_trigger_s, 60);
+    EXPECT_EQ(record.trigger, RecordConfig::Trigger::kCameraLost);
+    EXPECT_EQ(record.format, RecordConfig::Format::kRaw);
+    EXPECT_EQ(record.every, 3);
+    EXPECT_TRUE(Load(kSimulated).value().record.folder.empty());
+}
 
 TEST(RigExampleTest, LoadsAndShowsTheDefaults) {
     const auto config = LoadRigConfig(HITCHVIEW_SOURCE_DIR "/docs/rig.example.yaml");
@@ -389,7 +411,8 @@ INSTANTIATE_TEST_SUITE_P(Sections, RigExampleKeysTest,
                                          "simulation: {x: 1}\n", "stabilization: {x: 1}\n",
                                          "stitching: {x: 1}\n", "threads: {x: 1}\n",
                                          "real_time: {x: 1}\n", "can: {x: 1}\n",
-                                         "can: {hitch_angle: {x: 1}}\n", "publish: {x: 1}\n"));
+                                         "can: {hitch_angle: {x: 1}}\n", "publish: {x: 1}\n",
+                                         "record: {x: 1}\n"));
 
 }  // namespace
 }  // namespace hitchview::app

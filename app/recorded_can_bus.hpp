@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+#include "app/record_intake.hpp"
+#include "hal/can_bus.hpp"
+
+namespace hitchview::app {
+
+/// A bus whose frames are recorded as they come.
+class RecordedCanBus final : public hal::CanBus {
+ public:
+    /// Both must outlive it.
+    RecordedCanBus(hal::CanBus& bus, RecordIntake& intake) : bus_(bus), intake_(intake) {}
+
+ private:
+    hal::Result<hal::CanFrame> DoWaitFrame(std::chrono::milliseconds timeout) override {
+        // A recording is not read before its frames are.
+        if (!intake_.live() && !intake_.started()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            return hal::Error::kTimeout;
+        }
+        auto frame = bus_.WaitFrame(timeout);
+        if (frame) intake_.Put(frame.value());
+        return frame;
+    }
+    [[nodiscard]] hal::CanCounts DoCounts() const override { return bus_.counts(); }
+
+    hal::CanBus& bus_;
+    RecordIntake& intake_;
+};
+
+}  // namespace hitchview::app
