@@ -88,14 +88,18 @@ bool LogReplay::Take(const LogMerge::Event& event) {
     }
 }
 
-/// Whether the recording goes on with another calibration than the one it is replayed with.
+/// Whether the recording goes on with another calibration than the one it is replayed with: a whole
+/// one, for an id alone may be damaged.
 bool LogReplay::IsOtherRig(const drivers::LcmLogEvent& event) {
     const auto rig = drivers::ParseLoggedRig(event.data);
     const std::string& known = config_.calibration_id;
     if (!rig || known.empty() || rig.value().calibration_id == known) return false;
+    const std::string stated(rig.value().calibration_id);
+    const auto other =
+        calib::ParseCalibration(std::string(rig.value().calibration_yaml), "").calibration;
+    if (!other || other->id() != stated) return false;
     Say("the recording goes on with another calibration at " + UtcText(event.utime_us) + ", " +
-        std::string(rig.value().calibration_id) + " after " + known +
-        ": replay the parts by themselves, or with --rig");
+        stated + " after " + known + ": replay the parts by themselves, or with --rig");
     return true;
 }
 

@@ -163,7 +163,24 @@ TEST_F(LogReplayTest, CamerasMayNameTheLogInTheRigFile) {
         "schema: 1\ncanvas: {projection: cylinder, size_px: [1024, 180]}\n"
         "calibration: rig.calib.yaml\n" +
             tests::SimulatedUnits([](const std::string&) { return "{replay: drive.lcm}"; }));
-    ExpectSame(RunAndKeep(RigFile()), RunAndKeep(rig));
+    const auto driven = RunAndKeep(RigFile());
+    ExpectSame(driven, RunAndKeep(rig));
+
+    // A log for each camera is as good.
+    for (const std::string& channel : drive().channels) {
+        RecordedDrive alone = drive();
+        std::erase_if(alone.pictures,
+                      [&](const tests::DriveMessage& m) { return m.channel != channel; });
+        alone.Write(folder() / (channel + ".lcm"));
+    }
+    const std::string logs =
+        folder().Write("logs.yaml",
+                       "schema: 1\ncanvas: {projection: cylinder, size_px: [1024, 180]}\n"
+                       "calibration: rig.calib.yaml\n" +
+                           tests::SimulatedUnits([](const std::string& name) {
+                               return "{replay: " + CameraChannel(name) + ".lcm}";
+                           }));
+    ExpectSame(driven, RunAndKeep(logs));
 }
 
 TEST_F(LogReplayTest, TheDevicesOfARecordedLiveRigAreNotAskedFor) {
@@ -243,6 +260,13 @@ TEST_F(LogReplayTest, ARecordingThatChangesItsCalibrationEnds) {
     drive().Write(segments / "0.lcm");
     RecordedDrive other = drive();
     other.texts.calibration_id = "0123456789ab";
+    other.Write(segments / "1.lcm");
+    EXPECT_TRUE(RunRig(Loaded(segments.path()).value(), {}, kGoOn).ok()) << "that was damage";
+
+    auto calibration = calib::ParseCalibration(other.texts.calibration, "").calibration.value();
+    calibration.vehicle = "another";
+    other.texts.calibration = calib::ToYaml(calibration);
+    other.texts.calibration_id = calibration.id();
     other.Write(segments / "1.lcm");
     testing::internal::CaptureStderr();
     EXPECT_FALSE(RunRig(Loaded(segments.path()).value(), {}, kGoOn).ok());
