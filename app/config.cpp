@@ -160,8 +160,7 @@ std::string CalibrationProblem(const calib::RigCalibration& calibration, const s
 }
 
 hal::Checked<RigConfig> ReadWhole(YamlMap root, const calib::YamlComplaints& complaints,
-                                  const std::filesystem::path& folder) {
-    ConfigContext context{.folder = folder};
+                                  ConfigContext context) {
     RigConfig config = ReadRig(root, context);
     if (!complaints.empty()) return complaints.Text();
     return config;
@@ -171,14 +170,16 @@ hal::Checked<RigConfig> ReadWhole(YamlMap root, const calib::YamlComplaints& com
 
 hal::Checked<RigConfig> LoadRigConfig(const std::filesystem::path& file) {
     calib::YamlComplaints complaints(file.string());
-    auto config = ReadWhole(calib::LoadYaml(file, complaints), complaints, file.parent_path());
+    auto config = ReadWhole(calib::LoadYaml(file, complaints), complaints,
+                            ConfigContext{.folder = file.parent_path()});
     if (config) config->file = file;
     return config;
 }
 
 hal::Checked<RigConfig> ParseRigConfig(const NamedText& rig, const std::filesystem::path& folder) {
     calib::YamlComplaints complaints(rig.name);
-    auto config = ReadWhole(calib::ParseYaml(rig.text, complaints), complaints, folder);
+    auto config = ReadWhole(calib::ParseYaml(rig.text, complaints), complaints,
+                            ConfigContext{.folder = folder, .recorded = true});
     if (config) config->file = rig.name;
     return config;
 }

@@ -81,6 +81,8 @@ struct LogConfig {
     /// All cameras' frames carry the moment of their capture; otherwise the time of their messages
     /// is taken for it.
     bool stamped = true;
+    /// That the recording must keep to its end, where the calibration is its own; otherwise empty.
+    std::string calibration_id{};
 };
 
 struct CameraConfig {
@@ -292,7 +294,8 @@ struct RigConfig {
 /// A DBC file that it names is read and checked with it; whether the other files exist is not
 /// looked at. Throws nothing.
 hal::Checked<RigConfig> LoadRigConfig(const std::filesystem::path& file);
-/// The same of a rig file's content. Relative paths stand relative to `folder`.
+/// The same of a recorded rig file's content. Relative paths stand relative to `folder`; a CAN bus
+/// whose DBC file is not there is left out, with a word on stderr.
 hal::Checked<RigConfig> ParseRigConfig(const NamedText& rig, const std::filesystem::path& folder);
 
 /// Reads the calibration of a cylinder rig and checks that it has every camera of the rig, on the

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cstdio>
 
 #include "app/config_sections.hpp"
 #include "app/dbc_signal.hpp"
@@ -212,10 +213,24 @@ HitchAngleSignal ReadHitchAngle(const YamlValue& value, const ConfigContext& con
     return signal;
 }
 
+/// Of a recording, which carries no DBC file.
+bool LacksDbc(const YamlValue& can, const ConfigContext& context) {
+    YamlMap map = can.Map();
+    YamlMap hitch_angle = map["hitch_angle"].Map();
+    std::filesystem::path dbc;
+    ReadPath(hitch_angle["dbc"], context, dbc);
+    std::error_code failed;
+    return !dbc.empty() && !std::filesystem::exists(dbc, failed);
+}
+
 }  // namespace
 
 std::optional<CanConfig> ReadCan(const YamlValue& value, const ConfigContext& context) {
     if (!value.given()) return std::nullopt;
+    if (context.recorded && LacksDbc(value, context)) {
+        std::fprintf(stderr, "the DBC file of the rig is not here: no hitch angle is decoded\n");
+        return std::nullopt;
+    }
     CanConfig can;
     YamlMap map = value.Map();
     ReadCanSource(map.Required("source"), context, can);

@@ -15,6 +15,7 @@ namespace hitchview::app {
 /// What the sections of one file share.
 struct ConfigContext {
     std::filesystem::path folder{};
+    bool recorded = false;  ///< a recording's rig file: other files may not be there
     std::set<std::string> camera_names{};
     bool simulates_cameras = false;
     std::set<std::string> devices{};

@@ -55,11 +55,19 @@ void LogReplay::Work() {
 void LogReplay::Read() {
     if (config_.from_us > 0) recordings_.SeekToTime(config_.from_us);
     auto event = recordings_.Next();
-    for (; event; event = recordings_.Next()) {
-        if (config_.to_us && event.value().event.utime_us >= *config_.to_us) return;
+    for (; event && past_end_ < kSurelyPastEnd; event = recordings_.Next()) {
+        if (IsPastEnd(event.value().event.utime_us)) continue;
         if (!Take(event.value()) || !HandOver()) return;
     }
+    if (event) return;
     if (event.error() != hal::Error::kEndOfStream && !stop_) Say(recordings_.failure());
+}
+
+/// One event alone may bear a damaged time.
+bool LogReplay::IsPastEnd(std::int64_t utime_us) {
+    const bool past = config_.to_us && utime_us >= *config_.to_us;
+    past_end_ = past ? past_end_ + 1 : 0;
+    return past;
 }
 
 /// False when the replay cannot go on.
@@ -69,7 +77,29 @@ bool LogReplay::Take(const LogMerge::Event& event) {
     });
     if (camera != cameras_.end())
         return TakeFrame(static_cast<std::size_t>(camera - cameras_.begin()), event);
-    if (can_bus_ != nullptr) TakeCanFrame(event.event);
+    switch (drivers::KindOf(event.event.data)) {
+        case drivers::LoggedKind::kRig:
+            return !IsOtherRig(event.event);
+        case drivers::LoggedKind::kCanFrame:
+            if (can_bus_ != nullptr) TakeCanFrame(event.event);
+            return true;
+        default:
+            return true;
+    }
+}
+
+/// Whether the recording goes on with another calibration than the one it is replayed with: a whole
+/// one, for an id alone may be damaged.
+bool LogReplay::IsOtherRig(const drivers::LcmLogEvent& event) {
+    const auto rig = drivers::ParseLoggedRig(event.data);
+    const std::string& known = config_.calibration_id;
+    if (!rig || known.empty() || rig.value().calibration_id == known) return false;
+    const std::string stated(rig.value().calibration_id);
+    const auto other =
+        calib::ParseCalibration(std::string(rig.value().calibration_yaml), "").calibration;
+    if (!other || other->id() != stated) return false;
+    Say("the recording goes on with another calibration at " + UtcText(event.utime_us) + ", " +
+        stated + " after " + known + ": replay the parts by themselves, or with --rig");
     return true;
 }
 
@@ -92,7 +122,6 @@ bool LogReplay::TakeFrame(std::size_t camera, const LogMerge::Event& event) {
 }
 
 void LogReplay::TakeCanFrame(const drivers::LcmLogEvent& event) {
-    if (drivers::KindOf(event.data) != drivers::LoggedKind::kCanFrame) return;
     const auto logged = drivers::ParseLoggedCanFrame(event.data);
     if (!logged) return;
     if (early_can_.size() == kMostEarlyCanFrames) early_can_.erase(early_can_.begin());

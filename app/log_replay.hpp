@@ -40,6 +40,7 @@ class LogReplay final : public FrameSynchronizer {
     /// Pictures of another kind in a row that end a replay; fewer are damage.
     static constexpr int kMostOthers = 30;
     static constexpr std::size_t kMostEarlyCanFrames = 256;
+    static constexpr int kSurelyPastEnd = 16;  ///< events in a row
 
     /// Cameras and bus (null: none) must outlive it, `cameras` in the order of the rig.
     /// The error names a recording that cannot be read.
@@ -58,8 +59,10 @@ class LogReplay final : public FrameSynchronizer {
     // The reader's thread.
     void Work();
     void Read();
+    [[nodiscard]] bool IsPastEnd(std::int64_t utime_us);
     [[nodiscard]] bool Take(const LogMerge::Event& event);
     [[nodiscard]] bool TakeFrame(std::size_t camera, const LogMerge::Event& event);
+    [[nodiscard]] bool IsOtherRig(const drivers::LcmLogEvent& event);
     void TakeCanFrame(const drivers::LcmLogEvent& event);
     void HandOverCanFrames();
     [[nodiscard]] bool IsOther(std::size_t camera, const drivers::LoggedImage& image,
@@ -78,6 +81,7 @@ class LogReplay final : public FrameSynchronizer {
     std::vector<hal::CanFrame> early_can_;  ///< that came before the first picture, the newest
     LogTimeline timeline_;
     LogSetFormer former_;
+    int past_end_ = 0;  ///< events in a row
     std::atomic<bool> stop_{false};
     std::atomic<bool> failed_{false};
     LogMerge recordings_;

@@ -40,7 +40,7 @@ void Keep(const drivers::LoggedRig& logged, const std::string& file, RigOfLog& r
 /// The first rig_t. Where another rig is given it only names channels: it is not sought for long.
 hal::Checked<RigOfLog> FindRig(const std::vector<fs::path>& files, bool other_given,
                                const std::atomic<bool>& stop) {
-    constexpr int kShortSearch = 10'000;
+    constexpr int kShortSearch = 500;
     LogRecording recording(files, stop);
     RigOfLog rig;
     auto event = recording.Next();
@@ -69,6 +69,7 @@ hal::Checked<RigConfig> RecordedRig(const RigOfLog& logged, const fs::path& fold
     if (id != logged.calibration_id)
         return logged.calibration.name + ": its id is " + id + ", must be " +
                logged.calibration_id + ", which the recording states";
+    config->log.calibration_id = id;
     return config;
 }
 

@@ -113,6 +113,7 @@ void AddRun(CLI::App& app, ReplayOptions& options) {
                             "Make and publish panoramas at the cameras' pace until stopped.\n"
                             "Example: hitchview run --rig /etc/hitchview/rig.yaml");
     AddRunOptions(verb, options);
+    verb.get_option("--rig")->required();
     options.run.realtime = true;
     options.run.publish = true;
     options.run.record = true;

@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <string>
+#include <vector>
 
 #include "drivers/lcm_health_message.hpp"
 #include "drivers/lcm_log_messages.hpp"
+#include "drivers/lcm_log_picture.hpp"
 #include "drivers/lcm_log_reader.hpp"
 #include "drivers/lcm_overlay_message.hpp"
 #include "hal/expect.hpp"
@@ -34,8 +36,17 @@ class MemoryFile {
     int descriptor_;
 };
 
+/// A message may claim any size; those of a recording's cameras are known beforehand.
+void Decode(const drivers::LoggedImage& image) {
+    constexpr std::size_t kLargestFrame = 1 << 20;
+    const auto kind = drivers::PictureKindOf(image);
+    if (!kind || hal::FrameBytes(kind->format) > kLargestFrame) return;
+    std::vector<std::uint8_t> frame(hal::FrameBytes(kind->format));
+    (void)drivers::LcmLogPictureDecoder(*kind).Decode(image, frame);
+}
+
 void ParseAsEverything(std::span<const std::uint8_t> message) {
-    (void)drivers::ParseLoggedImage(message);
+    if (const auto image = drivers::ParseLoggedImage(message)) Decode(image.value());
     (void)drivers::ParseLoggedCanFrame(message);
     (void)drivers::ParseLoggedHitchAngle(message);
     (void)drivers::ParseLoggedStatus(message);

@@ -10,6 +10,7 @@
 #include "lcmtypes/hitchview_can_frame_t.h"
 #include "lcmtypes/hitchview_rig_t.h"
 #include "tests/support/image_message.hpp"
+#include "tests/support/jpeg_picture.hpp"
 #include "tests/support/random_log.hpp"
 #include "tests/support/rig_messages.hpp"
 
@@ -52,11 +53,20 @@ LogBytes CanBytes() {
     return Encoded(frame, hitchview_can_frame_t_encoded_size, hitchview_can_frame_t_encode);
 }
 
+LogBytes JpegBytes() {
+    ImageMessage message;
+    message.width_px = 32;
+    message.height_px = 16;
+    message.data = JpegPicture(32, 16, TJSAMP_422, 1);
+    return message.Encode();
+}
+
 RandomLog LogOfMessages() {
     RandomLog log(3, 5);
     log.Append(1'700'000'002'000'000, "RIG", RigBytes());
     log.Append(1'700'000'002'000'100, "CAM_FRONT", ImageMessage{}.Encode());
     log.Append(1'700'000'002'000'200, "CAN_RX", CanBytes());
+    log.Append(1'700'000'002'000'300, "CAM_FRONT", JpegBytes());
     return log;
 }
 
@@ -95,7 +105,7 @@ TEST(FuzzLcmLogTest, NoMutationOfALogBreaksAPromiseOfTheReader) {
 TEST(FuzzLcmLogTest, NoMutationOfAMessageReachesPastIt) {
     std::mt19937 random(2);
     for (const LogBytes& message :
-         {RigBytes(), CanBytes(), ImageMessage{}.Encode(),
+         {RigBytes(), CanBytes(), ImageMessage{}.Encode(), JpegBytes(),
           HealthBytes(1, {.cameras = {"front", "left"}}), OverlayBytes(1, 64, 32, 0)}) {
         for (int i = 0; i < 2000; ++i) {
             LogBytes bytes = message;

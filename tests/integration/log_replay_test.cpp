@@ -163,7 +163,43 @@ TEST_F(LogReplayTest, CamerasMayNameTheLogInTheRigFile) {
         "schema: 1\ncanvas: {projection: cylinder, size_px: [1024, 180]}\n"
         "calibration: rig.calib.yaml\n" +
             tests::SimulatedUnits([](const std::string&) { return "{replay: drive.lcm}"; }));
-    ExpectSame(RunAndKeep(RigFile()), RunAndKeep(rig));
+    const auto driven = RunAndKeep(RigFile());
+    ExpectSame(driven, RunAndKeep(rig));
+
+    // A log for each camera is as good.
+    for (const std::string& channel : drive().channels) {
+        RecordedDrive alone = drive();
+        std::erase_if(alone.pictures,
+                      [&](const tests::DriveMessage& m) { return m.channel != channel; });
+        alone.Write(folder() / (channel + ".lcm"));
+    }
+    const std::string logs =
+        folder().Write("logs.yaml",
+                       "schema: 1\ncanvas: {projection: cylinder, size_px: [1024, 180]}\n"
+                       "calibration: rig.calib.yaml\n" +
+                           tests::SimulatedUnits([](const std::string& name) {
+                               return "{replay: " + CameraChannel(name) + ".lcm}";
+                           }));
+    ExpectSame(driven, RunAndKeep(logs));
+}
+
+TEST_F(LogReplayTest, TheDevicesOfARecordedLiveRigAreNotAskedFor) {
+    RecordedDrive live = drive();
+    live.texts.rig =
+        "schema: 1\ncanvas: {projection: cylinder, size_px: [1024, 180]}\n"
+        "calibration: gone.yaml\nset_tolerance_ms: 20\n" +
+        tests::SimulatedUnits([](const std::string& name) {
+            return "{v4l2: /dev/gone/" + name + ", format: uyvy}";
+        }) +
+        "can:\n  source: {socketcan: gone0}\n  hitch_angle: {dbc: gone.dbc, message: A, "
+        "signal: B}\n";
+    const std::string log = folder() / "live.lcm";
+    live.Write(log);
+    testing::internal::CaptureStderr();
+    const auto loaded = Loaded(log);
+    EXPECT_THAT(testing::internal::GetCapturedStderr(),
+                HasSubstr("the DBC file of the rig is not"));
+    ExpectSame(RunAndKeep(RigFile()), RunAndKeep(loaded));
 }
 
 TEST_F(LogReplayTest, WhatIsMissingIsSaid) {
@@ -219,6 +255,25 @@ TEST_F(LogReplayTest, ACameraThatBecomesAnotherOneEndsTheReplay) {
     EXPECT_FALSE(summary.ok());
 }
 
+TEST_F(LogReplayTest, ARecordingThatChangesItsCalibrationEnds) {
+    const tests::TemporaryFolder segments;
+    drive().Write(segments / "0.lcm");
+    RecordedDrive other = drive();
+    other.texts.calibration_id = "0123456789ab";
+    other.Write(segments / "1.lcm");
+    EXPECT_TRUE(RunRig(Loaded(segments.path()).value(), {}, kGoOn).ok()) << "that was damage";
+
+    auto calibration = calib::ParseCalibration(other.texts.calibration, "").calibration.value();
+    calibration.vehicle = "another";
+    other.texts.calibration = calib::ToYaml(calibration);
+    other.texts.calibration_id = calibration.id();
+    other.Write(segments / "1.lcm");
+    testing::internal::CaptureStderr();
+    EXPECT_FALSE(RunRig(Loaded(segments.path()).value(), {}, kGoOn).ok());
+    EXPECT_THAT(testing::internal::GetCapturedStderr(),
+                HasSubstr("goes on with another calibration"));
+}
+
 TEST_F(LogReplayTest, TheHitchAngleIsDecodedAgain) {
     const auto published = [&](const hal::Checked<RigConfig>& loaded, const std::string& name) {
         RigConfig config = loaded.value();
@@ -259,7 +314,8 @@ TEST_F(LogReplayTest, NoDamageKeepsItFromItsEnd) {
         }
         if (random() % 4 == 0) bytes.resize(random() % bytes.size() + 1);
         folder().Write("random.lcm", bytes);
-        const auto loaded = LoadLogRig({.logs = {log}, .rig = RigFile()}, kGoOn);
+        const auto loaded =
+            i % 2 == 0 ? Loaded(log) : LoadLogRig({.logs = {log}, .rig = RigFile()}, kGoOn);
         if (!loaded) continue;
         ++opened;
         const std::size_t sets = SetsOf(loaded).size();
