@@ -100,10 +100,6 @@ int WebServer::descriptor() const {
     return MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_EPOLL_FD)->epoll_fd;
 }
 
-unsigned WebServer::connections() const {
-    return MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_CURRENT_CONNECTIONS)->num_connections;
-}
-
 milliseconds WebServer::Patience(milliseconds longest) const {
     MHD_UNSIGNED_LONG_LONG timeout_ms = 0;
     if (MHD_get_timeout(daemon_, &timeout_ms) != MHD_YES) return longest;

@@ -52,9 +52,6 @@ class WebServer {
     /// The state is due to all clients.
     void Announce(hal::Instant now) { streams_.Announce(now); }
 
-    /// Connections that are open.
-    [[nodiscard]] unsigned connections() const;
-
  private:
     enum class Turn { kWaits, kNews, kNothing };
 

@@ -2,6 +2,8 @@
 
 #include <poll.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <array>
 #include <csignal>
@@ -20,7 +22,6 @@ using std::chrono::milliseconds;
 
 enum ExitCode { kDone = 0, kWrongUse = 2, kMachineFailed = 3 };
 
-/// Gives way to the programs of the frame path wherever a CPU is short.
 constexpr int kNiceness = 15;
 /// The state goes out five times a second, and at once where it is urgent.
 constexpr milliseconds kAnnouncePeriod{200};
@@ -30,6 +31,15 @@ constexpr milliseconds kLongestSleep{10};
 int Fail(ExitCode code, const std::string& reason) {
     std::fprintf(stderr, "hitchview web: %s\n", reason.c_str());
     return code;
+}
+
+/// Gives way to the programs of the frame path and of recording, wherever a CPU or the disk is
+/// short.
+void GiveWay() {
+    constexpr int kThisProcess = 1;
+    constexpr int kIdleClass = 3 << 13;  // linux/ioprio.h
+    setpriority(PRIO_PROCESS, 0, kNiceness);
+    syscall(SYS_ioprio_set, kThisProcess, 0, kIdleClass);
 }
 
 hal::Instant Now() {
@@ -127,7 +137,7 @@ int WebVerb(const WebOptions& options, const std::atomic<bool>& stop) {
         return Fail(kWrongUse, "--recordings: " + options.recordings.string() + " is no folder");
     }
     std::signal(SIGPIPE, SIG_IGN);  // a client that leaves is no reason to end
-    setpriority(PRIO_PROCESS, 0, kNiceness);
+    GiveWay();
 
     const WebChannels& channels = sources.value().channels;
     WebState state(channels, sources.value().cameras);

@@ -1,4 +1,4 @@
-"""The page in a real browser: python3 web_browser_test.py HITCHVIEW WEB_RIG_SENDER [FOLDER]
+"""The page in a real browser: python3 web_browser_test.py HITCHVIEW WEB_RIG_SENDER WEB_SIMULATED_RIG [FOLDER]
 
 Runs in a network namespace of its own (tests/support/lcm_namespace.sh). Exit code 77: there is no
 browser here. With FOLDER, screenshots are left there.
@@ -6,16 +6,21 @@ browser here. With FOLDER, screenshots are left there.
 
 import os
 import shutil
+import socket
+import struct
 import subprocess
 import sys
+import tempfile
+import threading
 import time
 import unittest
 
+sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 from browser import Browser, wait_until  # noqa: E402
 
-HITCHVIEW, SENDER = sys.argv[1:3]
-FOLDER = sys.argv[3] if len(sys.argv) > 3 else None
+HITCHVIEW, SENDER, SIMULATED_RIG = sys.argv[1:4]
+FOLDER = sys.argv[4] if len(sys.argv) > 4 else None
 # Guards against hanging only: what must be quick is measured in the page itself.
 PATIENCE_S = 60
 
@@ -41,7 +46,7 @@ for (let i = 3; i < data.length; i += 4) count += data[i] > 0 ? 1 : 0;
 return count;
 """
 
-# Milliseconds from the event's arrival in the page to the tile's failed state; 0: not yet.
+# When each tile went to its failed state, ms since the epoch; 0: not yet.
 WATCH = """
 window.lostAt = new Array(8).fill(0);
 new MutationObserver(() => {
@@ -187,6 +192,54 @@ class PageTest(unittest.TestCase):
         self.assertEqual(self.browser.run(top), before)
         self.assertEqual(self.browser.run("return document.documentElement.scrollWidth > innerWidth"), False)
         self.assertEqual(self.browser.complaints(), [])
+
+
+class MissingCameras(threading.Thread):
+    """Hears the status as it is on the wire; when it first told of a missing camera, ms since the epoch."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.told_at_ms = 0
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self.socket.bind(("239.255.76.67", 7667))
+        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP,
+                               socket.inet_aton("239.255.76.67") + socket.inet_aton("127.0.0.1"))
+
+    def run(self):
+        while not self.told_at_ms:
+            message = self.socket.recv(65536)
+            header = b"LC02" + message[4:8] + b"PANORAMA_STATUS\0"
+            if not message.startswith(header):
+                continue
+            # Fingerprint, sequence, four times, then the bits of the missing cameras.
+            if struct.unpack_from(">i", message, len(header) + 8 + 4 + 4 * 8)[0] != 0:
+                self.told_at_ms = time.time() * 1000
+        self.socket.close()
+
+
+class DriveTest(unittest.TestCase):
+    def test_a_camera_that_drops_out_of_a_simulated_drive_fails_within_a_second(self):
+        with tempfile.TemporaryDirectory() as folder, Browser() as browser:
+            subprocess.run([SIMULATED_RIG, folder], check=True)
+            rig = os.path.join(folder, "rig.yaml")
+            web = subprocess.Popen([HITCHVIEW, "web", "--port", "0", "--rig", rig], stdout=subprocess.PIPE, text=True)
+            browser.open(web.stdout.readline().strip())
+            wait_until(lambda: len(browser.run(STATES)) == 8, PATIENCE_S, "eight tiles")
+            browser.run(WATCH)
+            missing = MissingCameras()
+            missing.start()
+            drive = subprocess.Popen([HITCHVIEW, "replay", "--rig", rig, "--out", folder, "--realtime", "--publish"],
+                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            lost_at_ms = wait_until(lambda: max(browser.run("return window.lostAt")), 3 * PATIENCE_S, "a lost tile")
+            name = browser.run("return document.querySelectorAll('.camera .name')[window.lostAt.indexOf(arguments[0])].textContent",
+                               lost_at_ms)
+            for process in (drive, web):
+                process.terminate()
+                process.wait()
+            web.stdout.close()
+        print(f"{name} failed {lost_at_ms - missing.told_at_ms:.0f} ms after the status that said so", file=sys.stderr)
+        self.assertLess(lost_at_ms - missing.told_at_ms, 1000)
 
 
 if __name__ == "__main__":
