@@ -48,8 +48,8 @@ class Display final : public hal::Publisher {
         newest_ = now;
         return recording_ != nullptr ? recording_->Publish(image) : hal::Done{};
     }
-    hal::Result<hal::Done> DoPublish(const hal::PanoramaStatus& status) override {
-        return recording_ != nullptr ? recording_->Publish(status) : hal::Done{};
+    hal::Result<hal::Done> DoPublish(const hal::PanoramaStatus& /*status*/) override {
+        return hal::Done{};
     }
     hal::Result<hal::Done> DoPublish(const hal::HitchAngle& /*angle*/) override {
         return hal::Done{};
