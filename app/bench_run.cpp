@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "algo/unified_vertex_motion.hpp"
+#include "app/bench_recording.hpp"
 #include "app/evaluation_statistics.hpp"
 #include "app/panorama_publisher.hpp"
 #include "app/pipeline.hpp"
@@ -30,7 +31,9 @@ double Ms(hal::Instant duration) {
 /// Takes panoramas as display units would, and notes when. Read it when the publisher has finished.
 class Display final : public hal::Publisher {
  public:
-    explicit Display(const hal::Clock& clock) : clock_(clock) {}
+    /// `recording`: has everything too; null: there is none.
+    explicit Display(const hal::Clock& clock, hal::Publisher* recording = nullptr)
+        : clock_(clock), recording_(recording) {}
 
     std::vector<double> latencies_ms;
     std::vector<double> intervals_ms;
@@ -43,7 +46,7 @@ class Display final : public hal::Publisher {
         bytes.push_back(static_cast<double>(image.jpeg.size()));
         if (newest_.count() != 0) intervals_ms.push_back(Ms(now - newest_));
         newest_ = now;
-        return hal::Done{};
+        return recording_ != nullptr ? recording_->Publish(image) : hal::Done{};
     }
     hal::Result<hal::Done> DoPublish(const hal::PanoramaStatus& /*status*/) override {
         return hal::Done{};
@@ -54,6 +57,7 @@ class Display final : public hal::Publisher {
     hal::Result<hal::Done> DoPublish(const hal::Event& /*event*/) override { return hal::Done{}; }
 
     const hal::Clock& clock_;
+    hal::Publisher* recording_;
     hal::Instant newest_{};
 };
 
@@ -93,23 +97,42 @@ class BenchDrive {
         figures.times = pipeline_.times();
     }
 
-    void RunPaced(hal::Instant period, BenchFigures& figures) {
+    PacedFigures RunPaced(hal::Instant period) {
         Display display(clock_);
+        return RunPaced(period, display, [](FrameSet set) { return set; });
+    }
+
+    PacedFigures RunRecorded(hal::Instant period, const std::filesystem::path& folder,
+                             RecordingSummary& summary) {
+        BenchRecording recording(folder, Next(), clock_);
+        Display display(clock_, &recording.publisher());
+        const PacedFigures figures =
+            RunPaced(period, display, [&](FrameSet set) { return recording.Tap(std::move(set)); });
+        summary = recording.Finish();
+        return figures;
+    }
+
+ private:
+    template <typename Tap>
+    PacedFigures RunPaced(hal::Instant period, Display& display, Tap&& tap) {
         PanoramaPublisher publisher = OpenPublisher(display, true);
+        PacedFigures figures;
         const hal::Instant start = clock_.Now();
         for (int i = 0; i < options_.frames; ++i) {
             const hal::Instant due = start + period * i;
             if (clock_.Now() > due + period) continue;
             clock_.SleepUntil(due);
-            Publish(publisher, frames_.Set(next_++, due));
+            Publish(publisher, tap(frames_.Set(next_++, due)));
+            const double total_ms = pipeline_.times()[static_cast<int>(Stage::kTotal)].last_ms();
+            if (total_ms > Ms(period)) ++figures.deadline_misses;
         }
         publisher.Finish();
-        figures.latency_p50_ms = Quantile(display.latencies_ms, 0.5).value_or(0);
-        figures.latency_p99_ms = Quantile(display.latencies_ms, 0.99).value_or(0);
+        figures.p50_ms = Quantile(display.latencies_ms, 0.5).value_or(0);
+        figures.p99_ms = Quantile(display.latencies_ms, 0.99).value_or(0);
         figures.dropped = options_.frames - static_cast<int>(display.latencies_ms.size());
+        return figures;
     }
 
- private:
     /// Of this thread and the workers.
     [[nodiscard]] double PipelineCpuMs() const {
         return CpuMs(CLOCK_THREAD_CPUTIME_ID) + Ms(workers_.cpu_time());
@@ -154,7 +177,10 @@ BenchFigures RunBench(const RigGeometry& geometry, BenchFrames& frames,
     BenchFigures figures;
     BenchDrive drive(geometry, frames, options);
     drive.RunUnpaced(figures);
-    if (options.period) drive.RunPaced(*options.period, figures);
+    if (options.period) figures.paced = drive.RunPaced(*options.period);
+    if (options.period && !options.record.empty())
+        figures.recorded =
+            drive.RunRecorded(*options.period, options.record, figures.recording.emplace());
     return figures;
 }
 

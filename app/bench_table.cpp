@@ -34,6 +34,21 @@ std::string WholeFrame(const json& whole) {
                 At(whole, "render_to_remap_ratio"));
 }
 
+/// Empty where nothing was recorded.
+std::string Recording(const json& whole) {
+    if (!whole.contains("recorded_frames")) return "";
+    return Line(
+               "while it records: p50 %5.1f ms, p99 %5.1f ms, %d dropped; %d and %d without longer "
+               "than a period\n",
+               At(whole, "recording_p50_ms"), At(whole, "recording_p99_ms"),
+               whole.at("recording_dropped").get<int>(),
+               whole.at("recording_deadline_misses").get<int>(),
+               whole.at("deadline_misses").get<int>()) +
+           Line("recorded %.0f camera frames, %.0f left out; %.1f MB\n",
+                At(whole, "recorded_frames"), At(whole, "unrecorded_frames"),
+                At(whole, "recorded_bytes") / 1e6);
+}
+
 std::string Stages(const json& stages) {
     std::string table = "\nstage, one thread         p50 ms   memcpy\n";
     for (const auto& [name, stage] : stages.items()) {
@@ -63,7 +78,8 @@ std::string Scaling(const json& scaling) {
 }  // namespace
 
 std::string BenchTable(const json& figures) {
-    std::string table = WholeFrame(figures.at("whole_frame")) + Stages(figures.at("stages"));
+    std::string table = WholeFrame(figures.at("whole_frame")) +
+                        Recording(figures.at("whole_frame")) + Stages(figures.at("stages"));
     table += Memory(figures.at("memory_bytes"));
     if (!figures.at("scaling").empty()) table += Scaling(figures.at("scaling"));
     return table;

@@ -42,6 +42,20 @@ drivers::SimulationOptions Simulation(int camera_width_px) {
     return simulation;
 }
 
+using Rounds = std::map<std::string, std::vector<double>>;
+
+void AddRecording(const BenchFigures& figures, Rounds& rounds) {
+    std::uint64_t recorded = 0;
+    for (const FrameCounts& camera : figures.recording->cameras) recorded += camera.recorded;
+    rounds["recording_p50_ms"].push_back(figures.recorded.p50_ms);
+    rounds["recording_p99_ms"].push_back(figures.recorded.p99_ms);
+    rounds["recording_dropped"].push_back(figures.recorded.dropped);
+    rounds["recording_deadline_misses"].push_back(figures.recorded.deadline_misses);
+    rounds["recorded_frames"].push_back(static_cast<double>(recorded));
+    rounds["recorded_bytes"].push_back(static_cast<double>(figures.recording->written.bytes));
+    rounds["unrecorded_frames"].push_back(static_cast<double>(figures.recording->dropped));
+}
+
 /// One simulated rig and all that is measured with it.
 class Bench {
  public:
@@ -55,8 +69,9 @@ class Bench {
         const int height = geometry.canvas.height_px;
         const std::size_t panorama_bytes =
             hal::FrameBytes({width, height, hal::PixelFormat::kI420, hal::Range::kFull});
-        const BenchRunOptions run{options_.workers, options_.frames, kDefaultPeriod};
-        std::map<std::string, std::vector<double>> rounds;
+        const BenchRunOptions run{options_.workers, options_.frames, kDefaultPeriod,
+                                  options_.record};
+        Rounds rounds;
         for (int i = 0; i < (options_.quick ? 1 : options_.rounds); ++i) {
             const double memcpy_ms = MemcpyMs(frames, panorama_bytes);
             const BenchFigures figures = RunBench(geometry, frames, run);
@@ -65,9 +80,11 @@ class Bench {
             rounds["jpeg_bytes"].push_back(figures.jpeg_bytes);
             rounds["growth"].push_back(figures.growth);
             rounds["interval_ms"].push_back(figures.interval_ms);
-            rounds["p50_ms"].push_back(figures.latency_p50_ms);
-            rounds["p99_ms"].push_back(figures.latency_p99_ms);
-            rounds["dropped"].push_back(figures.dropped);
+            rounds["p50_ms"].push_back(figures.paced.p50_ms);
+            rounds["p99_ms"].push_back(figures.paced.p99_ms);
+            rounds["dropped"].push_back(figures.paced.dropped);
+            rounds["deadline_misses"].push_back(figures.paced.deadline_misses);
+            if (figures.recording) AddRecording(figures, rounds);
             rounds["memcpy_ms"].push_back(memcpy_ms);
             rounds["memcpy_ratio"].push_back(figures.core_ms / memcpy_ms);
         }

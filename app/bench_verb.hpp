@@ -14,9 +14,10 @@ struct BenchOptions {
     hal::PixelFormat format = hal::PixelFormat::kUyvy;  ///< of the cameras: also kNv12, kYuyv
     int frames = 120;                                   ///< of each run
     int rounds = 3;                                     ///< whole runs; the median counts
-    bool quick = false;           ///< one round, and no scaling over cameras, widths and workers
-    std::filesystem::path cache;  ///< folder for rendered frames; empty: none
-    std::filesystem::path json;   ///< file for all figures; empty: none
+    bool quick = false;              ///< one round, and no scaling over cameras, widths and workers
+    std::filesystem::path record{};  ///< folder; also measured while it records; empty: not
+    std::filesystem::path cache;     ///< folder for rendered frames; empty: none
+    std::filesystem::path json;      ///< file for all figures; empty: none
 };
 
 /// Measures what this machine does with eight simulated cameras, whose frames lie in memory, beside

@@ -182,6 +182,7 @@ CLI::App& AddBench(CLI::App& app, BenchOptions& options) {
     verb.add_flag("--quick", options.quick,
                   "one round, and no table over cameras, canvas widths and workers");
     verb.add_option("--cache", options.cache, "folder where rendered frames are kept");
+    verb.add_option("--record", options.record, "also measure while it records into this folder");
     verb.add_option("--json", options.json, "file for all figures");
     return verb;
 }

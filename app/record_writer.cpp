@@ -20,10 +20,10 @@ const char* Reason(int error) {
 }  // namespace
 
 RecordWriter::RecordWriter(RecordFolder folder, const drivers::RecordedRig& rig,
-                           std::chrono::microseconds segment, hal::Clock& clock)
+                           const Options& options, hal::Clock& clock)
     : folder_(std::move(folder)),
       rig_(rig),
-      segment_(segment),
+      options_(options),
       clock_(clock),
       free_bytes_(folder_.FreeBytes()) {}
 
@@ -36,12 +36,14 @@ RecordWriter::Outcome RecordWriter::Append(const RecordedEvent& event) {
     return hal::Done{};
 }
 
-/// Also where the wall clock was set back: the order of times stays that of the files.
+/// The wall clock, and with it the times of events, may step.
+std::int64_t RecordWriter::SegmentTime_us(std::int64_t utime_us) const {
+    return options_.live ? clock_.Now().count() / 1000 : utime_us;
+}
+
 bool RecordWriter::IsDue(std::int64_t utime_us) const {
-    constexpr std::int64_t kDisorder_us = 5'000'000;
-    const std::int64_t age_us = utime_us - begun_us_;
     const std::uint64_t limit = folder_.SegmentLimit();
-    return age_us >= segment_.count() || age_us < -kDisorder_us ||
+    return SegmentTime_us(utime_us) - begun_us_ >= options_.segment.count() ||
            (limit > 0 && log_.bytes() >= limit);
 }
 
@@ -49,7 +51,7 @@ RecordWriter::Outcome RecordWriter::OpenSegment(std::int64_t utime_us) {
     folder_.MakeRoom();
     if (const Outcome space = CheckSpace(); !space) return space;
     if (!log_.Open(folder_.NextSegment())) return Fail();
-    begun_us_ = utime_us;
+    begun_us_ = SegmentTime_us(utime_us);
     if (!Write(utime_us, "RIG", rig_.At(utime_us))) return Fail();
     ++files_;
     folder_.Sync();

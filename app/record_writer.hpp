@@ -27,9 +27,14 @@ class RecordWriter {
     /// Done, or why not, for people.
     using Outcome = hal::Result<hal::Done, hal::EventText>;
 
+    struct Options {
+        std::chrono::microseconds segment = std::chrono::seconds(60);
+        /// Segments last so long of time. False: of the times of their events.
+        bool live = true;
+    };
     /// `clock` must outlive it.
-    RecordWriter(RecordFolder folder, const drivers::RecordedRig& rig,
-                 std::chrono::microseconds segment, hal::Clock& clock);
+    RecordWriter(RecordFolder folder, const drivers::RecordedRig& rig, const Options& options,
+                 hal::Clock& clock);
 
     /// A recording begins with the next event, in a file of its own.
     void Begin(std::int64_t utime_us) { folder_.Begin(utime_us); }
@@ -48,6 +53,7 @@ class RecordWriter {
     [[nodiscard]] std::int64_t free_bytes() const { return free_bytes_; }
 
  private:
+    [[nodiscard]] std::int64_t SegmentTime_us(std::int64_t utime_us) const;
     [[nodiscard]] bool IsDue(std::int64_t utime_us) const;
     Outcome OpenSegment(std::int64_t utime_us);
     hal::Result<hal::Done> Write(std::int64_t utime_us, std::string_view channel,
@@ -57,10 +63,10 @@ class RecordWriter {
 
     RecordFolder folder_;
     drivers::RigMessage rig_;
-    std::chrono::microseconds segment_;
+    Options options_;
     hal::Clock& clock_;
     drivers::LcmLogWriter log_;
-    std::int64_t begun_us_ = 0;  // the open segment
+    std::int64_t begun_us_ = 0;  // the open segment, on the clock that its length is measured by
     hal::Instant next_beat_{};
     std::atomic<std::uint64_t> files_{0};
     std::atomic<std::uint64_t> bytes_{0};

@@ -54,7 +54,8 @@ Recorder::Recorder(const RecorderOptions& options, RecordFolder folder,
       clock_(clock),
       events_(events),
       intake_(options.intake, clock, events),
-      writer_(std::move(folder), rig, options.segment, clock),
+      writer_(std::move(folder), rig, {.segment = options.segment, .live = options.intake.live},
+              clock),
       frames_(std::move(cameras), options.frames, intake_),
       state_(RecordingState::kOn) {
     intake_.ring().SetWhenFull(WhenFullOf(intake_));

@@ -47,8 +47,10 @@ hal::Checked<hal::Done> Apply(const ThreadSchedule& schedule) {
 
 void RunInBackground() {
     constexpr int kNice = 10;
-    // With 0 and threads of Linux this is the calling thread alone; to become nicer needs no right.
-    setpriority(PRIO_PROCESS, 0, kNice);
+    // A service may have started all of the program with a priority. To give it up needs no right.
+    const sched_param none{.sched_priority = 0};
+    pthread_setschedparam(pthread_self(), SCHED_OTHER, &none);
+    setpriority(PRIO_PROCESS, 0, kNice);  // of a thread, in Linux: the calling one
 }
 
 void NameThisThread(const std::string& name) {

@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/program.hpp"
 #include "tests/device/live_report.hpp"
 #include "tests/device/vivid.hpp"
+#include "tests/support/recorded_events.hpp"
 #include "tests/support/simulated_rig_files.hpp"
 
 // The program on eight virtual cameras, publishing over LCM.
@@ -69,6 +71,33 @@ TEST_F(LiveRunTest, EveryFrameOfEightCamerasIsAccountedFor) {
     EXPECT_GT(Count(sets, "complete"), kFrames / 3);
     EXPECT_EQ(Count(sets, "empty"), 0);
     EXPECT_LE(live.at("spread").at("max_ms").get<double>(), 33.4);
+}
+
+/// Every frame that the cameras gave is in the log, or counted as left out.
+TEST_F(LiveRunTest, EveryFrameIsRecordedOrCounted) {
+    const std::string drives = folder_ / "drives";
+    ASSERT_EQ(RunProgram(HITCHVIEW, {"record", "--rig", Rig(), "--out", drives, "--seconds", "5",
+                                     "--min-free-mb", "0"}),
+              0);
+    const json report = json::parse(tests::FileText(folder_ / "drives/report.json"));
+    std::printf("%s\n", report.at("recording").dump().c_str());
+    EXPECT_EQ(report.at("heap_calls_after_ready"), 0) << report.at("heap_calls_by_thread");
+    std::map<std::string, int> channels;
+    for (const auto& event : tests::RecordedEvents(drives)) ++channels[event.channel];
+    int recorded = 0;
+    for (const auto& [name, camera] : report.at("recording").at("cameras").items()) {
+        recorded += camera.at("recorded").get<int>();
+        EXPECT_LE(Count(camera, "recorded") + Count(camera, "dropped"),
+                  Count(report.at("live").at("cameras").at(name), "delivered"))
+            << name;
+    }
+    int logged = 0;
+    for (const auto& [channel, messages] : channels)
+        logged += channel.starts_with("CAM_") ? messages : 0;
+    EXPECT_EQ(logged, recorded);
+    EXPECT_GT(recorded, 0);
+    EXPECT_EQ(channels["RIG"], 1);
+    EXPECT_GT(channels["PANORAMA_STATUS"], 0);
 }
 
 }  // namespace

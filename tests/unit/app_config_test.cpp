@@ -175,7 +175,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{kPlane + "stabilisation: {}\n",
                 "rig.yaml:6: stabilisation is no key, must be one of schema, canvas, calibration, "
                 "units, simulation, stabilization, stitching, placement, threads, real_time, "
-                "period_ms, set_tolerance_ms, can, publish"},
+                "period_ms, set_tolerance_ms, can, publish, "
+                "record"},
         BadFile{kPlane + "threads: {priority: 100, affinity: [0, -1]}\n"
                          "real_time: {lock_memory: always}\n",
                 "rig.yaml:6: threads.priority is 100, must be 0 to 99\n"
@@ -335,7 +336,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{kSimulated + "record: {segment_s: 0}\n",
                 "rig.yaml:6: record.segment_s is 0, must be 1 to 3600"},
         BadFile{kSimulated + "record: {format: png}\n",
-                "rig.yaml:6: record.format is png, must be jpeg or raw"},
+                "rig.yaml:6: record.format is png, must be one of jpeg, raw"},
         BadFile{kSimulated + "record: {trigger: camera_lost}\n",
                 "rig.yaml:6: record.trigger is camera_lost, must be absent without "
                 "pre_trigger_s"}));
