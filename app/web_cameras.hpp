@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/lcm_health_message.hpp"
+#include "drivers/lcm_logged_health.hpp"
 #include "drivers/lcm_log_messages.hpp"
 #include "hal/frame.hpp"
 

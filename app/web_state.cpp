@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "app/web_json.hpp"
-#include "drivers/lcm_health_message.hpp"
+#include "drivers/lcm_logged_health.hpp"
 #include "drivers/lcm_log_messages.hpp"
-#include "drivers/lcm_overlay_message.hpp"
+#include "drivers/lcm_logged_overlay.hpp"
 
 namespace hitchview::app {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "drivers/lcm_health_message.hpp"
+#include "drivers/lcm_logged_health.hpp"
 #include "drivers/lcm_log_messages.hpp"
 #include "drivers/lcm_log_picture.hpp"
 #include "drivers/lcm_log_reader.hpp"
-#include "drivers/lcm_overlay_message.hpp"
+#include "drivers/lcm_logged_overlay.hpp"
 #include "hal/expect.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "drivers/lcm_overlay_message.hpp"
+#include "drivers/lcm_logged_overlay.hpp"
 
 #include <bit>
 

@@ -1,4 +1,4 @@
-#include "drivers/lcm_health_message.hpp"
+#include "drivers/lcm_logged_health.hpp"
 
 #include <cmath>
 

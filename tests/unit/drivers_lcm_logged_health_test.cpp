@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "drivers/lcm_health_message.hpp"
-#include "drivers/lcm_overlay_message.hpp"
+#include "drivers/lcm_logged_health.hpp"
+#include "drivers/lcm_logged_overlay.hpp"
 #include "tests/support/rig_messages.hpp"
 
 namespace hitchview::drivers {
