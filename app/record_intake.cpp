@@ -34,10 +34,10 @@ void RecordIntake::Put(const drivers::LcmMessage& message) {
     PutBytes(message.utime_us, message.channel, message.bytes);
 }
 
-void RecordIntake::Put(const hal::CanFrame& frame) {
+void RecordIntake::Put(const hal::CanFrame& frame, hal::Instant origin) {
     hal::CanFrame on_clock = frame;
-    on_clock.received_at += origin();
-    const std::int64_t utime_us = UtimeOf(frame.received_at);
+    on_clock.received_at += origin;
+    const std::int64_t utime_us = clock_.EpochMicroseconds(on_clock.received_at);
     std::array<std::uint8_t, drivers::kMostCanFrameBytes> bytes{};
     const std::size_t used = drivers::Encode(on_clock, utime_us, options_.can_bus.c_str(), bytes);
     PutBytes(utime_us, "CAN_RX", std::span(bytes).first(used));

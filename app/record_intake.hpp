@@ -46,7 +46,8 @@ class RecordIntake {
 
     /// A message as it was published.
     void Put(const drivers::LcmMessage& message);
-    void Put(const hal::CanFrame& frame);
+    /// `origin`: moment of the clock that is moment 0 of the bus.
+    void Put(const hal::CanFrame& frame, hal::Instant origin);
 
     /// Counts what could not be recorded, and tells of the first of an episode. `why`: for people.
     void NoteDropped(std::string_view why);
@@ -61,7 +62,6 @@ class RecordIntake {
     /// On the clock of what is recorded, which in recordings and simulations is not this machine's.
     [[nodiscard]] hal::Instant Now() const;
     [[nodiscard]] bool started() const { return started_; }
-    [[nodiscard]] bool live() const { return options_.live; }
     [[nodiscard]] bool lossless() const { return options_.lossless; }
 
  private:

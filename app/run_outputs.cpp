@@ -121,7 +121,8 @@ void RunOutputs::StartPublishing(const RigConfig& config, const RunOptions& opti
                                  const RunSummary& run, const hal::FrameFormat& format) {
     can_bus_ = board.can_bus();
     if (can_bus_ != nullptr && recorder_) {
-        recorded_can_ = std::make_unique<RecordedCanBus>(*can_bus_, recorder_->intake());
+        recorded_can_ =
+            std::make_unique<RecordedCanBus>(*can_bus_, board.is_can_live(), recorder_->intake());
         can_bus_ = recorded_can_.get();
     }
     if (can_bus_ != nullptr) {

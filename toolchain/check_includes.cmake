@@ -18,14 +18,15 @@ set(may_use_hal "^[a-z0-9_]+$")
 set(may_use_algo "^[a-z0-9_]+$|^Eigen/|^opencv2/|^hwy/|^(immintrin|arm_neon)\\.h$")
 
 # Where app may name a concrete driver: file -> pattern. What demo_verb.cpp may, bench_*, demo_*, scenario_*, simulated_* and truth_* may;
-# log_files stands for log_*, web_files for web_*.
+# log_files stands for log_*, web_files for web_*, record_files for what makes recordings.
 set(drivers_in_app/board.cpp "^drivers/")
 set(drivers_in_app/camera_probe.cpp "^drivers/v4l2_(camera|probe)\\.hpp$")
 set(drivers_in_app/live_camera_options.hpp "^drivers/(libcamera_camera|v4l2_negotiation)\\.hpp$")
 set(drivers_in_app/view_verb.cpp "^drivers/lcm_subscriber\\.hpp$")
-set(drivers_in_app/web_files "^drivers/lcm_(health_message|image_message|listener|log_messages|overlay_message|url)\\.hpp$")
+set(drivers_in_app/web_files "^drivers/lcm_(image_message|listener|log_messages|logged_health|logged_overlay|url)\\.hpp$")
 set(drivers_in_app/demo_verb.cpp "^drivers/(simulated_[a-z_]+|steady_clock)\\.hpp$")
 set(drivers_in_app/log_files "^drivers/lcm_log_[a-z_]+\\.hpp$")
+set(drivers_in_app/record_files "^drivers/lcm_(encoder|log_writer|record_messages|url)\\.hpp$")
 set(drivers_in_app/evaluation.cpp "^drivers/replay_camera\\.hpp$")
 
 # 'Logged only': what these files reach, over any number of includes, has none of these headers.
@@ -74,6 +75,8 @@ function(check_own place file folder header)
         string(REGEX REPLACE "^app/(bench|demo|scenario|simulated|truth)_[a-z_]+\\.[ch]pp$" "app/demo_verb.cpp" program "${file}")
         string(REGEX REPLACE "^app/log_[a-z_]+\\.[ch]pp$" "app/log_files" program "${program}")
         string(REGEX REPLACE "^app/web_[a-z_]+\\.[ch]pp$" "app/web_files" program "${program}")
+        string(REGEX REPLACE "^app/(frame_recorder|publish_options|record(er|_[a-z_]+|ing_[a-z_]+))\\.[ch]pp$" "app/record_files"
+            program "${program}")
         if(NOT DEFINED drivers_in_${program} OR NOT header MATCHES "${drivers_in_${program}}")
             complain("${place}" "only app/board.cpp may name a concrete driver, not ${header}")
         endif()

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ctime>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
@@ -14,8 +15,10 @@
 #include <vector>
 
 #include "app/program.hpp"
+#include "drivers/lcm_log_messages.hpp"
 #include "hal/hitch_angle.hpp"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
+#include "tests/support/recorded_events.hpp"
 #include "tests/support/sine_texture.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/virtual_can.hpp"
@@ -118,7 +121,7 @@ class SocketCanRunTest : public testing::Test {
             std::filesystem::create_hard_link(first, folder_ / ("a/" + std::to_string(i) + ".png"));
     }
 
-    std::string Rig(const std::string& interface) {
+    std::string Rig(const std::string& interface, const std::string& more = "") {
         return folder_.Write(
             "rig.yaml",
             "schema: 1\n"
@@ -129,7 +132,8 @@ class SocketCanRunTest : public testing::Test {
             "  source: {socketcan: " +
                 interface +
                 "}\n"
-                "  hitch_angle: {dbc: x.dbc, message: Yaw, signal: Angle, max_age_ms: 300}\n");
+                "  hitch_angle: {dbc: x.dbc, message: Yaw, signal: Angle, max_age_ms: 300}\n" +
+                more);
     }
 
     int Run(const std::string& rig) {
@@ -198,6 +202,39 @@ TEST_F(SocketCanRunTest, AnglesArePublishedAsTheyComeAlsoAfterTheInterfaceWasAwa
     EXPECT_EQ(can["dropped"], 0);
     EXPECT_GE(can["disconnections"], 1);
     EXPECT_GT(can["frames"], 60);
+    EXPECT_EQ(Report()["heap_calls_after_ready"], 0) << Report()["heap_calls_by_thread"];
+}
+
+TEST_F(SocketCanRunTest, WhileItRecordsEveryFrameOfTheBusIsInTheLog) {
+    const std::string drives = folder_ / "drives";
+    std::filesystem::create_directory(drives);
+    std::atomic<bool> ran{false};
+    std::thread traffic([&] {
+        while (tests::Segments(drives).empty() && !ran)
+            std::this_thread::sleep_for(milliseconds(10));
+        tests::CanSender sender("vcan0");
+        for (const canid_t id : {canid_t{1111}, canid_t{0x555}, 0x18ff7a27 | CAN_EFF_FLAG,
+                                 0x123 | CAN_RTR_FLAG, CAN_ERR_FLAG | CAN_ERR_ACK}) {
+            can_frame frame = YawFrame(1000);
+            frame.can_id = id;
+            for (int i = 0; i < 20; ++i) sender.Send(frame);
+        }
+    });
+    EXPECT_EQ(Run(Rig("vcan0", "record: {folder: drives, min_free_mb: 0}\n")), 0);
+    ran = true;
+    traffic.join();
+    std::map<std::pair<std::uint32_t, hal::CanFrameKind>, int> frames;
+    for (const auto& event : tests::RecordedEvents(drives)) {
+        if (event.channel != "CAN_RX") continue;
+        const auto logged = drivers::ParseLoggedCanFrame(event.data);
+        ASSERT_TRUE(logged);
+        EXPECT_EQ(logged.value().bus, "vcan0");
+        ++frames[{logged.value().frame.id, logged.value().frame.kind}];
+    }
+    ASSERT_EQ(frames.size(), 5U);
+    for (const auto& [id, count] : frames) EXPECT_EQ(count, 20) << id.first;
+    EXPECT_EQ((frames[{0x123, hal::CanFrameKind::kRemote}]), 20);
+    EXPECT_EQ((frames[{CAN_ERR_ACK, hal::CanFrameKind::kError}]), 20);
     EXPECT_EQ(Report()["heap_calls_after_ready"], 0) << Report()["heap_calls_by_thread"];
 }
 

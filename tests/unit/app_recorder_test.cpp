@@ -181,7 +181,7 @@ TEST(RecorderTest, CanFramesAndMessagesAreInTheLogOnTheClockOfTheDrive) {
     drive.recorder->Start(seconds(5));
     hal::CanFrame frame{.id = 0x123, .size_bytes = 2, .received_at = seconds(1)};
     frame.data[1] = 9;
-    drive.recorder->intake().Put(frame);
+    drive.recorder->intake().Put(frame, seconds(5));
     const std::array<std::uint8_t, 3> bytes{1, 2, 3};
     drive.recorder->intake().Put(
         {.channel = "STATUS", .utime_us = kEpoch_us + 6'000'000, .bytes = bytes});
