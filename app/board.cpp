@@ -11,6 +11,7 @@
 #include "drivers/simulated_camera.hpp"
 #include "drivers/simulated_can_bus.hpp"
 #include "drivers/simulated_scenario.hpp"
+#include "drivers/socket_buffers.hpp"
 #include "drivers/socketcan_bus.hpp"
 #include "drivers/steady_clock.hpp"
 #include "drivers/v4l2_camera.hpp"
@@ -224,10 +225,17 @@ hal::Checked<std::unique_ptr<hal::Publisher>> Board::OpenPublisher(const Publish
                       .status_channel = config.status_channel,
                       .hitch_angle_channel = config.hitch_angle_channel,
                       .event_channel = config.event_channel,
+                      .health_channel = config.health_channel,
                       .max_image_bytes = config.max_bytes}},
         *clock_);
     if (!publisher) return publisher.error();
     return std::unique_ptr<hal::Publisher>(std::move(*publisher));
+}
+
+std::optional<int> Board::ReceiveBufferBytes() {
+    const auto buffers = drivers::ReadSocketBuffers();
+    if (!buffers) return std::nullopt;
+    return buffers->largest_bytes;
 }
 
 }  // namespace hitchview::app

@@ -47,6 +47,8 @@ class Board {
     [[nodiscard]] CameraFormats formats() const;
 
     hal::Checked<std::unique_ptr<hal::Publisher>> OpenPublisher(const PublishConfig& config);
+    /// What this system grants a subscriber that asks for a large receive buffer; empty: not known.
+    [[nodiscard]] static std::optional<int> ReceiveBufferBytes();
 
  private:
     Board();

@@ -193,8 +193,11 @@ struct PublishConfig {
     std::string status_channel = "PANORAMA_STATUS";
     std::string hitch_angle_channel = "HITCH_ANGLE";
     std::string event_channel = "PANORAMA_EVENT";
+    std::string health_channel = "PANORAMA_HEALTH";
     int jpeg_quality = 85;   ///< [30, 95]
     int max_bytes = 150000;  ///< of one compressed panorama. [20000, 4000000]
+    /// Panoramas that this system's receive buffers cannot hold are made small enough.
+    bool fit_receive_buffer = true;
 };
 
 /// What a run at the cameras' pace asks of the system.

@@ -149,8 +149,10 @@ PublishConfig ReadPublish(const YamlValue& value) {
     ReadChannel(map["status_channel"], channels, publish.status_channel);
     ReadChannel(map["hitch_angle_channel"], channels, publish.hitch_angle_channel);
     ReadChannel(map["event_channel"], channels, publish.event_channel);
+    ReadChannel(map["health_channel"], channels, publish.health_channel);
     map["jpeg_quality"].Read(Range<int>{30, 95}, publish.jpeg_quality);
     map["max_bytes"].Read(Range<int>{20000, 4000000}, publish.max_bytes);
+    map["fit_receive_buffer"].Read(publish.fit_receive_buffer);
     map.Finish();
     return publish;
 }

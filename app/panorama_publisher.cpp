@@ -65,6 +65,7 @@ void PanoramaPublisher::Work() {
             free_.Append(filled->slot);
         }
         SendHitchAngles();
+        SendHealth();
         SendEvents();
     }
 }
@@ -83,7 +84,10 @@ void PanoramaPublisher::Send(Filled& filled) {
 hal::Result<std::span<const std::uint8_t>> PanoramaPublisher::Compress(
     const hal::FrameView& picture) {
     const StageTimer timer(times_.jpeg);
-    return encoder_.Encode(picture, helpers_);
+    const auto jpeg = encoder_.Encode(picture, helpers_);
+    if (jpeg) newest_bytes_ = static_cast<int>(jpeg.value().size());
+    newest_quality_ = encoder_.newest_quality();
+    return jpeg;
 }
 
 void PanoramaPublisher::SendImage(const Item& item, std::span<const std::uint8_t> jpeg) {
@@ -120,6 +124,25 @@ void PanoramaPublisher::SendHitchAngles() {
 void PanoramaPublisher::SendEvents() {
     if (beside_.events == nullptr) return;
     while (const auto event = beside_.events->Take()) Count(publisher_.Publish(*event));
+}
+
+void PanoramaPublisher::SendHealth() {
+    if (beside_.watch == nullptr) return;
+    const hal::Instant now = clock_.Now();
+    beside_.watch->Update(now, dropped());
+    auto health = beside_.watch->MaybeHealth(now);
+    if (!health) return;
+    Complete(*health);
+    Count(publisher_.Publish(*health));
+}
+
+void PanoramaPublisher::Complete(hal::Health& health) const {
+    health.image_bytes = newest_bytes_;
+    health.image_budget_bytes = options_.jpeg.budget_bytes;
+    health.image_quality = newest_quality_;
+    health.stages.Add(StageHealthOf("jpeg", times_.jpeg));
+    health.stages.Add(StageHealthOf("send", times_.send));
+    health.stages.Add(StageHealthOf("latency", times_.latency));
 }
 
 void PanoramaPublisher::Count(const hal::Result<hal::Done>& outcome) {

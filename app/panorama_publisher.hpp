@@ -6,6 +6,7 @@
 
 #include "app/event_queue.hpp"
 #include "app/jpeg_encoder.hpp"
+#include "app/run_watch.hpp"
 #include "app/stage_times.hpp"
 #include "app/telemetry_thread.hpp"
 #include "app/worker_pool.hpp"
@@ -32,11 +33,12 @@ struct PanoramaPublisherOptions {
 struct SentBeside {
     TelemetryThread* telemetry = nullptr;
     EventQueue* events = nullptr;
+    RunWatch* watch = nullptr;  ///< health, and the events that it puts into `events`
 };
 
 /// Compresses and sends panoramas off the deadline, on a thread of its own (`publish`), which
 /// `publish-1` ... help to compress, and hands on the hitch angles and events that have come
-/// meanwhile. Memory is taken at construction.
+/// meanwhile and, once a second, the program's health. Memory is taken at construction.
 class PanoramaPublisher {
  public:
     /// All that is referred to must outlive this.
@@ -88,6 +90,8 @@ class PanoramaPublisher {
     void SendStatus(const Item& item);
     void SendHitchAngles();
     void SendEvents();
+    void SendHealth();
+    void Complete(hal::Health& health) const;
     void Count(const hal::Result<hal::Done>& outcome);
 
     hal::Publisher& publisher_;
@@ -100,6 +104,8 @@ class PanoramaPublisher {
     JpegEncoder encoder_;
     WorkerPool helpers_;
     PublishTimes times_;
+    int newest_bytes_ = 0;  // of the newest panorama as JPEG
+    int newest_quality_ = 0;
     std::atomic<hal::Instant::rep> start_ns_{0};
     std::atomic<std::uint64_t> dropped_{0};
     std::atomic<std::uint64_t> published_{0};

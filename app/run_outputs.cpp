@@ -1,5 +1,7 @@
 #include "app/run_outputs.hpp"
 
+#include <cstdio>
+
 #include "app/board.hpp"
 
 namespace hitchview::app {
@@ -42,6 +44,44 @@ hal::PanoramaStatus Status(const ShownPanorama& shown, const RunSummary& run, ha
     status.deadline_misses = run.deadline_misses;
     status.dropped = run.dropped;
     return status;
+}
+
+FrameFigures Figures(const hal::PanoramaStatus& status, const ShownPanorama& shown,
+                     hal::Instant start, const Pipeline& pipeline, const RunSummary& run) {
+    FrameFigures figures{.panoramas = run.frames,
+                         .dropped = run.dropped,
+                         .deadline_misses = run.deadline_misses,
+                         .cameras_missing = shown.cameras_missing,
+                         .captured_until = start + shown.captured_until,
+                         .seams = {status.seams},
+                         .matches = {status.seam_matches}};
+    for (std::size_t i = 0; i < figures.stage_ms.size(); ++i)
+        figures.stage_ms[i] = static_cast<float>(pipeline.times()[i].last_ms());
+    return figures;
+}
+
+/// Whose health is told: cameras in the order of the bits of cameras_missing.
+HealthOptions HealthOf(const RigConfig& config, const RunOptions& options, Board& board,
+                       const RunSummary& run) {
+    HealthOptions health{.version = HITCHVIEW_VERSION,
+                         .calibration_id = run.calibration_id,
+                         .cameras = {},
+                         .paced = options.realtime};
+    for (const algo::Unit unit : algo::kUnits) {
+        for (std::size_t i = 0; i < config.units[unit].cameras.size(); ++i) {
+            const bool live = board.live() != nullptr;
+            health.cameras.push_back({config.units[unit].cameras[i].name, unit,
+                                      live ? board.cameras()[unit][i].get() : nullptr});
+        }
+    }
+    return health;
+}
+
+ReceiveBufferVerdict ReceiveBuffer(const PublishConfig& publish) {
+    const bool network = publish.url.find("udpm://") != std::string::npos;
+    return JudgeReceiveBuffer(publish.max_bytes,
+                              network ? Board::ReceiveBufferBytes() : std::nullopt,
+                              publish.fit_receive_buffer);
 }
 
 /// Why a video cannot be continued.
@@ -99,10 +139,23 @@ hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const R
             *can_bus_, config.can->hitch_angle,
             TelemetryOptions{.paced = !live, .clock = live ? &board.clock() : nullptr});
     }
+    clock_ = &board.clock();
+    const bool seams = run.cameras[algo::Unit::kTrailer] > 0;
+    const ReceiveBufferVerdict buffer = ReceiveBuffer(config.publish);
+    if (!buffer.warning.view().empty())
+        std::fprintf(stderr, "publish: %s\n", buffer.warning.c_str());
+    watch_ =
+        std::make_unique<RunWatch>(RunWatchOptions{.health = HealthOf(config, options, board, run),
+                                                   .overlaps = {{seams && run.ring, seams}},
+                                                   .period = board.period(),
+                                                   .realtime = options.realtime,
+                                                   .receive_buffer = buffer},
+                                   board.events());
     publisher_ = std::make_unique<PanoramaPublisher>(
         *network_, board.clock(),
-        SentBeside{.telemetry = telemetry_.get(), .events = &board.events()}, format,
-        PanoramaPublisherOptions{.jpeg = {.budget_bytes = config.publish.max_bytes,
+        SentBeside{.telemetry = telemetry_.get(), .events = &board.events(), .watch = watch_.get()},
+        format,
+        PanoramaPublisherOptions{.jpeg = {.budget_bytes = buffer.budget_bytes,
                                           .highest_quality = config.publish.jpeg_quality},
                                  .calibration_id = run.calibration_id,
                                  .drop_when_late = options.realtime,
@@ -113,12 +166,14 @@ hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const R
 
 void RunOutputs::Start(hal::Instant start) {
     start_ = start;
-    if (publisher_) publisher_->StartRecording(start);
+    if (!publisher_) return;
+    publisher_->StartRecording(start);
+    watch_->Start(clock_->Now());
 }
 
 hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& pipeline,
                                          const RunSummary& run) {
-    if (publisher_) Publish(shown, run);
+    if (publisher_) Publish(shown, pipeline, run);
     if (panorama_ && !panorama_->Append(shown.picture)) return Refusal(*panorama_);
     for (const algo::Unit unit : algo::kUnits) {
         if (!views_[unit]) continue;
@@ -127,13 +182,15 @@ hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& p
     return hal::Done{};
 }
 
-void RunOutputs::Publish(const ShownPanorama& shown, const RunSummary& run) {
+void RunOutputs::Publish(const ShownPanorama& shown, const Pipeline& pipeline,
+                         const RunSummary& run) {
     if (telemetry_) telemetry_->Advance(shown.captured_until);
     hal::FrameView picture = shown.picture;
     picture.header.captured_at += start_;
-    publisher_->Append({.picture = picture,
-                        .captured_until = start_ + shown.captured_until,
-                        .status = Status(shown, run, start_)});
+    const hal::PanoramaStatus status = Status(shown, run, start_);
+    watch_->Add(Figures(status, shown, start_, pipeline, run));
+    publisher_->Append(
+        {.picture = picture, .captured_until = start_ + shown.captured_until, .status = status});
 }
 
 void RunOutputs::AddPools(std::vector<PoolSummary>& pools) const {

@@ -44,7 +44,7 @@ class RunOutputs {
     hal::Checked<hal::Done> OpenNetwork(const RigConfig& config, const RunOptions& options,
                                         Board& board, const RunSummary& run,
                                         const hal::FrameFormat& format);
-    void Publish(const ShownPanorama& shown, const RunSummary& run);
+    void Publish(const ShownPanorama& shown, const Pipeline& pipeline, const RunSummary& run);
 
     hal::Instant start_{};
     std::unique_ptr<VideoWriter> panorama_;
@@ -52,6 +52,8 @@ class RunOutputs {
     std::unique_ptr<hal::Publisher> network_;
     hal::CanBus* can_bus_ = nullptr;
     std::unique_ptr<TelemetryThread> telemetry_;
+    const hal::Clock* clock_ = nullptr;
+    std::unique_ptr<RunWatch> watch_;
     std::unique_ptr<PanoramaPublisher> publisher_;
 };
 

@@ -5,10 +5,14 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
+#include "drivers/lcm_health_message.hpp"
 #include "drivers/lcm_url.hpp"
 #include "lcmtypes/bot_core_image_t.h"
 #include "lcmtypes/hitchview_event_t.h"
+#include "lcmtypes/hitchview_health_t.h"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 
@@ -32,11 +36,23 @@ static_assert(int(Quality::kNotAvailable) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_NOT
 static_assert(int(Quality::kError) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_ERROR);
 static_assert(int(Quality::kImplausible) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_IMPLAUSIBLE);
 static_assert(int(Quality::kStale) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_STALE);
-static_assert(int(hal::EventCode::kCameraLost) == HITCHVIEW_EVENT_T_CAMERA_LOST);
-static_assert(int(hal::EventCode::kCameraBack) == HITCHVIEW_EVENT_T_CAMERA_BACK);
+using Code = hal::EventCode;
+static_assert(int(Code::kCameraLost) == HITCHVIEW_EVENT_T_CAMERA_LOST);
+static_assert(int(Code::kCameraBack) == HITCHVIEW_EVENT_T_CAMERA_BACK);
+static_assert(int(Code::kSeamLocked) == HITCHVIEW_EVENT_T_SEAM_LOCKED);
+static_assert(int(Code::kSeamCoast) == HITCHVIEW_EVENT_T_SEAM_COAST);
+static_assert(int(Code::kSeamReacquire) == HITCHVIEW_EVENT_T_SEAM_REACQUIRE);
+static_assert(int(Code::kSeamNoOverlap) == HITCHVIEW_EVENT_T_SEAM_NO_OVERLAP);
+static_assert(int(Code::kCalibrationMismatch) == HITCHVIEW_EVENT_T_CALIBRATION_MISMATCH);
+static_assert(int(Code::kDeadlineMissed) == HITCHVIEW_EVENT_T_DEADLINE_MISSED);
+static_assert(int(Code::kDeadlineKept) == HITCHVIEW_EVENT_T_DEADLINE_KEPT);
+static_assert(int(Code::kPanoramasDropped) == HITCHVIEW_EVENT_T_PANORAMAS_DROPPED);
+static_assert(int(Code::kReceiveBufferSmall) == HITCHVIEW_EVENT_T_RECEIVE_BUFFER_SMALL);
 
 /// Room for everything in an image message that is not its JPEG.
 constexpr int kEnvelopeBytes = 1024;
+/// Of what is no image: a health message with all its cameras and stages.
+constexpr int kLargestOtherBytes = 8192;
 
 /// The properties of a panorama as printable text, in memory of its own.
 class PanoramaMetadata {
@@ -85,14 +101,15 @@ class PanoramaMetadata {
 };
 
 Checked<Done> Check(const LcmEncoderOptions& options) {
-    if (auto name = CheckLcmChannel("panorama_channel", options.panorama_channel); !name) {
-        return name;
+    const std::pair<const char*, const std::string&> channels[] = {
+        {"panorama_channel", options.panorama_channel},
+        {"status_channel", options.status_channel},
+        {"hitch_angle_channel", options.hitch_angle_channel},
+        {"event_channel", options.event_channel},
+        {"health_channel", options.health_channel}};
+    for (const auto& [key, channel] : channels) {
+        if (auto name = CheckLcmChannel(key, channel); !name) return name;
     }
-    if (auto name = CheckLcmChannel("status_channel", options.status_channel); !name) return name;
-    if (auto name = CheckLcmChannel("hitch_angle_channel", options.hitch_angle_channel); !name) {
-        return name;
-    }
-    if (auto name = CheckLcmChannel("event_channel", options.event_channel); !name) return name;
     const int bytes = options.max_image_bytes;
     if (bytes >= kSmallestImageBytes && bytes <= kLargestImageBytes) return Done{};
     return "max_image_bytes is " + std::to_string(bytes) + ", must be " +
@@ -110,16 +127,19 @@ Checked<std::unique_ptr<LcmEncoder>> LcmEncoder::Create(const LcmEncoderOptions&
 LcmEncoder::LcmEncoder(const LcmEncoderOptions& options, const hal::Clock& clock)
     : options_(options),
       clock_(clock),
-      buffer_(static_cast<std::size_t>(options.max_image_bytes) + kEnvelopeBytes) {}
+      buffer_(static_cast<std::size_t>(options.max_image_bytes) + kEnvelopeBytes),
+      other_buffer_(kLargestOtherBytes) {}
 
 template <typename Message>
 Result<LcmMessage> LcmEncoder::Write(const std::string& channel, const Message& message,
                                      int (*encode)(void*, int, int, const Message*)) {
-    const int bytes = encode(buffer_.data(), 0, static_cast<int>(buffer_.size()), &message);
+    constexpr bool kIsImage = std::is_same_v<Message, bot_core_image_t>;
+    std::vector<std::uint8_t>& buffer = kIsImage ? buffer_ : other_buffer_;
+    const int bytes = encode(buffer.data(), 0, static_cast<int>(buffer.size()), &message);
     if (bytes < 0) return Error::kTooLarge;
     return LcmMessage{.channel = channel.c_str(),
                       .utime_us = message.utime,
-                      .bytes = {buffer_.data(), static_cast<std::size_t>(bytes)}};
+                      .bytes = {buffer.data(), static_cast<std::size_t>(bytes)}};
 }
 
 Result<LcmMessage> LcmEncoder::Encode(const hal::PanoramaImage& image) {
@@ -188,6 +208,12 @@ Result<LcmMessage> LcmEncoder::Encode(const hal::Event& event) {
         .text = const_cast<char*>(event.text.c_str()),
     };
     return Write(options_.event_channel, message, hitchview_event_t_encode);
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::Health& health) {
+    const LcmHealthMessage message(health, health_sequence_++,
+                                   clock_.EpochMicroseconds(health.measured_at));
+    return Write(options_.health_channel, message.get(), hitchview_health_t_encode);
 }
 
 }  // namespace hitchview::drivers

@@ -16,6 +16,7 @@ struct LcmEncoderOptions {
     std::string status_channel = "PANORAMA_STATUS";
     std::string hitch_angle_channel = "HITCH_ANGLE";
     std::string event_channel = "PANORAMA_EVENT";
+    std::string health_channel = "PANORAMA_HEALTH";
     int max_image_bytes = 1 << 20;  ///< largest JPEG. [1024, 8388608]
 };
 
@@ -26,9 +27,9 @@ struct LcmMessage {
     std::span<const std::uint8_t> bytes{};
 };
 
-/// What is published as messages: the panorama as bot_core.image_t, status, hitch angle and events
-/// as hitchview types. Encodes into one buffer taken at construction and takes no memory. Hitch
-/// angles and events are numbered in the order in which they come. Thread: one.
+/// What is published as messages: the panorama as bot_core.image_t, status, hitch angle, events and
+/// health as hitchview types. Encodes into one buffer taken at construction and takes no memory.
+/// Hitch angles, events and health are numbered in the order in which they come. Thread: one.
 class LcmEncoder {
  public:
     /// `clock` must outlive the encoder. The error names what is outside its range.
@@ -40,6 +41,7 @@ class LcmEncoder {
     hal::Result<LcmMessage> Encode(const hal::PanoramaStatus& status);
     hal::Result<LcmMessage> Encode(const hal::HitchAngle& angle);
     hal::Result<LcmMessage> Encode(const hal::Event& event);
+    hal::Result<LcmMessage> Encode(const hal::Health& health);
 
  private:
     LcmEncoder(const LcmEncoderOptions& options, const hal::Clock& clock);
@@ -50,9 +52,11 @@ class LcmEncoder {
 
     LcmEncoderOptions options_;
     const hal::Clock& clock_;
-    std::vector<std::uint8_t> buffer_;
+    std::vector<std::uint8_t> buffer_;        // of images
+    std::vector<std::uint8_t> other_buffer_;  // of all else
     std::uint32_t hitch_angle_sequence_ = 0;
     std::uint32_t event_sequence_ = 0;
+    std::uint32_t health_sequence_ = 0;
 };
 
 }  // namespace hitchview::drivers

@@ -42,6 +42,9 @@ class LcmPublisher final : public hal::Publisher {
     hal::Result<hal::Done> DoPublish(const hal::Event& event) override {
         return Send(encoder_->Encode(event));
     }
+    hal::Result<hal::Done> DoPublish(const hal::Health& health) override {
+        return Send(encoder_->Encode(health));
+    }
     hal::Result<hal::Done> Send(const hal::Result<LcmMessage>& message);
 
     std::unique_ptr<LcmEncoder> encoder_;

@@ -10,9 +10,26 @@ namespace hitchview::hal {
 
 /// What happened. The numbers stand on the wire: see lcmtypes/hitchview_event_t.lcm, which says how
 /// they are given out.
-enum class EventCode : std::int16_t { kCameraLost = 1, kCameraBack = 2 };
+enum class EventCode : std::int16_t {
+    kCameraLost = 1,
+    kCameraBack = 2,
+    kSeamLocked = 20,
+    kSeamCoast = 21,
+    kSeamReacquire = 22,
+    kSeamNoOverlap = 23,
+    kCalibrationMismatch = 40,
+    kDeadlineMissed = 60,
+    kDeadlineKept = 61,
+    kPanoramasDropped = 62,
+    kReceiveBufferSmall = 63,
+};
 
-inline constexpr std::array kEventCodes{EventCode::kCameraLost, EventCode::kCameraBack};
+/// In the order of their numbers.
+inline constexpr std::array kEventCodes{
+    EventCode::kCameraLost,          EventCode::kCameraBack,        EventCode::kSeamLocked,
+    EventCode::kSeamCoast,           EventCode::kSeamReacquire,     EventCode::kSeamNoOverlap,
+    EventCode::kCalibrationMismatch, EventCode::kDeadlineMissed,    EventCode::kDeadlineKept,
+    EventCode::kPanoramasDropped,    EventCode::kReceiveBufferSmall};
 
 constexpr const char* ToString(EventCode code) {
     switch (code) {
@@ -20,18 +37,36 @@ constexpr const char* ToString(EventCode code) {
             return "camera_lost";
         case EventCode::kCameraBack:
             return "camera_back";
+        case EventCode::kSeamLocked:
+            return "seam_locked";
+        case EventCode::kSeamCoast:
+            return "seam_coast";
+        case EventCode::kSeamReacquire:
+            return "seam_reacquire";
+        case EventCode::kSeamNoOverlap:
+            return "seam_no_overlap";
+        case EventCode::kCalibrationMismatch:
+            return "calibration_mismatch";
+        case EventCode::kDeadlineMissed:
+            return "deadline_missed";
+        case EventCode::kDeadlineKept:
+            return "deadline_kept";
+        case EventCode::kPanoramasDropped:
+            return "panoramas_dropped";
+        case EventCode::kReceiveBufferSmall:
+            return "receive_buffer_small";
     }
     return "unknown";
 }
 
 /// What and why, for a person.
-using EventText = FixedText<96>;
+using EventText = FixedText<192>;
 
 /// Something that a person should know of, at the moment it happened.
 struct Event {
     EventCode code = EventCode::kCameraLost;
     Instant when{};
-    FixedText<64> subject{};  ///< whom it befell: the name of a camera
+    FixedText<64> subject{};  ///< whom it befell: the name of a camera, left or right of a seam
     EventText text{};
 };
 

@@ -8,6 +8,7 @@
 
 #include "hal/event.hpp"
 #include "hal/frame.hpp"
+#include "hal/health.hpp"
 #include "hal/hitch_angle.hpp"
 #include "hal/result.hpp"
 
@@ -73,12 +74,15 @@ class Publisher {
     Result<Done> Publish(const PanoramaStatus& status) { return DoPublish(status); }
     Result<Done> Publish(const HitchAngle& angle) { return DoPublish(angle); }
     Result<Done> Publish(const Event& event) { return DoPublish(event); }
+    Result<Done> Publish(const Health& health) { return DoPublish(health); }
 
  private:
     virtual Result<Done> DoPublish(const PanoramaImage& image) = 0;
     virtual Result<Done> DoPublish(const PanoramaStatus& status) = 0;
     virtual Result<Done> DoPublish(const HitchAngle& angle) = 0;
     virtual Result<Done> DoPublish(const Event& event) = 0;
+    // What not every receiver wants: a publisher that does not carry it is done at once.
+    virtual Result<Done> DoPublish(const Health& /*health*/) { return Done{}; }
 };
 
 }  // namespace hitchview::hal

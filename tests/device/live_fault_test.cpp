@@ -156,8 +156,10 @@ class LiveFaultTest : public testing::Test {
         ExpectEventCounts(0);
     }
     void ExpectEventCounts(int of_each) {
-        EXPECT_EQ(report_.at("events"),
-                  (json{{"camera_lost", of_each}, {"camera_back", of_each}, {"refused", 0}}));
+        const json& events = report_.at("events");
+        EXPECT_EQ(events.at("camera_lost"), of_each);
+        EXPECT_EQ(events.at("camera_back"), of_each);
+        EXPECT_EQ(events.at("refused"), 0);
     }
 
     std::unique_ptr<Vivid> vivid_;

@@ -145,10 +145,10 @@ TEST_F(LiveFrameSynchronizerTest, ACameraThatCanBeHadAndGivesNothingIsNotBack) {
     cameras_[2].Mute();
     EXPECT_GE(TakeUntilMissing(0b0100), 0);
     while (cameras_[2].counts().reopened < 3) (void)sets_->WaitSet();
-    EXPECT_EQ(events_.counts().happened, (std::array<std::uint64_t, 2>{1, 0}));
+    EXPECT_EQ(events_.counts().happened, (decltype(EventCounts::happened){1, 0}));
     cameras_[2].Plug(true);
     EXPECT_GE(TakeUntilMissing(0), 0);
-    EXPECT_EQ(events_.counts().happened, (std::array<std::uint64_t, 2>{1, 1}));
+    EXPECT_EQ(events_.counts().happened, (decltype(EventCounts::happened){1, 1}));
 }
 
 TEST_F(LiveFrameSynchronizerTest, WithoutAnyCameraSetsGoOnEmpty) {
