@@ -6,6 +6,7 @@
 #include "algo/offline_unified_vertex_motion.hpp"
 #include "algo/unified_vertex_motion.hpp"
 #include "app/board.hpp"
+#include "app/calibration_mismatch.hpp"
 #include "app/first_sets.hpp"
 #include "app/panorama_loop.hpp"
 #include "app/real_time.hpp"
@@ -104,6 +105,14 @@ hal::Checked<hal::Done> Learn(Board& board, algo::OfflineUnifiedVertexMotion& mo
     return hal::Done{};
 }
 
+/// Tells the display units why no picture will come; whether they can be told changes nothing.
+void TellRefusal(const RigConfig& config, Board& board, const std::string& why) {
+    const auto network = board.OpenPublisher(config.publish);
+    if (!network) return;
+    [[maybe_unused]] const auto told =
+        network.value()->Publish(CalibrationRefused(why, board.clock().Now()));
+}
+
 /// What is known of a run before its first frame.
 RunSummary EmptySummary(const RigConfig& config, const Board& board, const RigGeometry& rig,
                         const std::optional<calib::RigCalibration>& calibration) {
@@ -162,7 +171,10 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     auto board = Board::Open(config, held);
     if (!board) return board.error();
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
-    if (!rig) return rig.error();
+    if (!rig) {
+        if (options.publish) TellRefusal(config, **board, rig.error());
+        return rig.error();
+    }
 
     WorkerPool workers(options.workers.value_or(config.workers),
                        options.realtime ? config.schedule : ThreadSchedule{});
@@ -181,6 +193,9 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     if (!board) return board.error();
 
     RunSummary summary = EmptySummary(config, **board, rig.value(), *calibration);
+    const hal::Instant now = (*board)->clock().Now();
+    for (const hal::Event& event : CalibrationMismatches(config, *calibration, now))
+        (*board)->events().Put(event);
     if (const auto made = MakeFolder(options.out); !made) return made.error();
     auto outputs = RunOutputs::Open(config, options, **board, summary, pipeline.format());
     if (!outputs) return outputs.error();
