@@ -40,7 +40,9 @@ Checked<std::unique_ptr<LcmSubscriber>> LcmSubscriber::Create(const LcmSubscribe
 }
 
 LcmSubscriber::LcmSubscriber(const LcmSubscriberOptions& options, LcmHandle lcm)
-    : lcm_(std::move(lcm)), message_(static_cast<std::size_t>(options.max_message_bytes)) {}
+    : lcm_(std::move(lcm)),
+      live_(IsMulticastUrl(options.url)),
+      message_(static_cast<std::size_t>(options.max_message_bytes)) {}
 
 bool LcmSubscriber::Subscribe(const std::string& channel) {
     const auto handler = [](const lcm_recv_buf_t* message, const char*, void* self) {
@@ -49,7 +51,8 @@ bool LcmSubscriber::Subscribe(const std::string& channel) {
     };
     lcm_subscription_t* const subscription =
         lcm_subscribe(lcm_.get(), channel.c_str(), handler, this);
-    return subscription != nullptr && lcm_subscription_set_queue_capacity(subscription, 1) == 0;
+    return subscription != nullptr &&
+           lcm_subscription_set_queue_capacity(subscription, kMostWaiting) == 0;
 }
 
 Result<PanoramaImage> LcmSubscriber::WaitImage(std::chrono::milliseconds timeout) {
@@ -57,17 +60,21 @@ Result<PanoramaImage> LcmSubscriber::WaitImage(std::chrono::milliseconds timeout
     image_ = Error::kTimeout;
     const int handled = lcm_handle_timeout(lcm_.get(), static_cast<int>(timeout.count()));
     if (handled < 0) return Error::kFailed;
+    for (int i = 0; live_ && i < kMostWaiting && lcm_handle_timeout(lcm_.get(), 0) > 0; ++i) {
+    }
     return image_;
 }
 
 void LcmSubscriber::OnMessage(std::span<const std::uint8_t> message) {
-    if (message.size() > message_.size()) {
-        image_ = Error::kTooLarge;
-    } else {
+    Result<PanoramaImage> image = Error::kTooLarge;
+    if (message.size() <= message_.size()) image = ParseImageMessage(message);
+    ++(image ? received_ : refused_);
+    if (image) {
         std::copy(message.begin(), message.end(), message_.begin());
         image_ = ParseImageMessage({message_.data(), message.size()});
+    } else if (!image_) {
+        image_ = image;
     }
-    ++(image_ ? received_ : refused_);
 }
 
 }  // namespace hitchview::drivers
