@@ -11,7 +11,7 @@
 #include "drivers/simulated_camera.hpp"
 #include "drivers/simulated_can_bus.hpp"
 #include "drivers/simulated_scenario.hpp"
-#include "drivers/socket_buffers.hpp"
+#include "drivers/lcm_receive_buffer.hpp"
 #include "drivers/socketcan_bus.hpp"
 #include "drivers/steady_clock.hpp"
 #include "drivers/v4l2_camera.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/lcm_image_message.hpp"
+#include "drivers/lcm_receive_buffer.hpp"
 
 namespace hitchview::drivers {
 namespace {
@@ -13,7 +14,6 @@ using hal::Error;
 using hal::PanoramaImage;
 using hal::Result;
 
-constexpr int kReceiveBufferBytes = 8 << 20;
 constexpr int kSmallestMessageBytes = 1024;
 constexpr int kLargestMessageBytes = 64 << 20;
 
@@ -30,7 +30,7 @@ Checked<Done> Check(const LcmSubscriberOptions& options) {
 
 Checked<std::unique_ptr<LcmSubscriber>> LcmSubscriber::Create(const LcmSubscriberOptions& options) {
     if (auto checked = Check(options); !checked) return checked.error();
-    LcmHandle lcm{lcm_create(WithReceiveBuffer(options.url, kReceiveBufferBytes).c_str())};
+    LcmHandle lcm{lcm_create(WithReceiveBuffer(options.url, SubscriberBufferBytes()).c_str())};
     if (lcm) {
         std::unique_ptr<LcmSubscriber> self(new LcmSubscriber(options, std::move(lcm)));
         if (self->Subscribe(options.channel)) return self;

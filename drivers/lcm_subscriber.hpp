@@ -22,7 +22,7 @@ struct LcmSubscriberOptions {
 
 /// Receives panoramas, the newest only: what came while a slow reader was busy is gone through at
 /// once and the last sound one is given. (With LCM's own queue at capacity 1 the reader would get
-/// the oldest of them.) The kernel is asked for a receive buffer of 8 MiB. Thread: the one that
+/// the oldest of them.) The kernel is asked for a receive buffer of 16 MiB. Thread: the one that
 /// calls WaitImage.
 class LcmSubscriber {
  public:

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "app/run_watch.hpp"
-#include "drivers/socket_buffers.hpp"
+#include "drivers/lcm_receive_buffer.hpp"
 #include "tests/support/heap_calls.hpp"
 
 namespace hitchview::app {

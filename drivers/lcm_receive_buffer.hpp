@@ -14,4 +14,8 @@ struct SocketBuffers {
 /// namespace. Empty where no socket can be had.
 std::optional<SocketBuffers> ReadSocketBuffers();
 
+/// What a subscriber asks for: room for four of the largest panoramas, or all that the system
+/// grants. (liblcm complains of a system that grants less than it was asked for.)
+int SubscriberBufferBytes();
+
 }  // namespace hitchview::drivers

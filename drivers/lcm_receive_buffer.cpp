@@ -1,7 +1,9 @@
-#include "drivers/socket_buffers.hpp"
+#include "drivers/lcm_receive_buffer.hpp"
 
 #include <sys/socket.h>
 #include <unistd.h>
+
+#include <algorithm>
 
 namespace hitchview::drivers {
 namespace {
@@ -26,6 +28,12 @@ std::optional<SocketBuffers> ReadSocketBuffers() {
     buffers.largest_bytes = ReceiveBuffer(probe) / 2;
     close(probe);
     return buffers;
+}
+
+int SubscriberBufferBytes() {
+    constexpr int kWanted = 16 << 20;
+    const auto buffers = ReadSocketBuffers();
+    return buffers ? std::min(kWanted, 2 * buffers->largest_bytes) : kWanted;
 }
 
 }  // namespace hitchview::drivers
