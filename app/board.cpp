@@ -226,6 +226,7 @@ hal::Checked<std::unique_ptr<hal::Publisher>> Board::OpenPublisher(const Publish
                       .hitch_angle_channel = config.hitch_angle_channel,
                       .event_channel = config.event_channel,
                       .health_channel = config.health_channel,
+                      .overlay_channel = config.overlay.channel,
                       .max_image_bytes = config.max_bytes}},
         *clock_);
     if (!publisher) return publisher.error();

@@ -23,7 +23,8 @@ PanoramaPublisher::PanoramaPublisher(hal::Publisher& publisher, const hal::Clock
       options_(options),
       pool_(format, options.drop_when_late ? kBuffersInTime : int{kBuffers}),
       encoder_(format, options.jpeg),
-      helpers_(std::min(options.threads, int{JpegEncoder::kSlices}), {}, "publish") {
+      helpers_(std::min(options.threads, int{JpegEncoder::kSlices}), {}, "publish"),
+      side_(publisher, options.side, counts_) {
     while (auto slot = pool_.Take()) free_.Append(*slot);
     thread_ = std::thread([this] { Work(); });
 }
@@ -67,18 +68,23 @@ void PanoramaPublisher::Work() {
         SendHitchAngles();
         SendHealth();
         SendEvents();
+        side_.SendPending();
     }
 }
 
 void PanoramaPublisher::Send(Filled& filled) {
     const auto jpeg = Compress(filled.item.picture);
     if (!jpeg) {
-        refused_.fetch_add(1, std::memory_order_relaxed);
+        counts_.Count(jpeg.error());
         return;
     }
-    const StageTimer timer(times_.send);
-    SendImage(filled.item, jpeg.value());
-    SendStatus(filled.item);
+    const hal::PanoramaImage image = ImageOf(filled.item, jpeg.value());
+    {
+        const StageTimer timer(times_.send);
+        counts_.Count(publisher_.Publish(image));
+        SendStatus(filled.item);
+    }
+    side_.SendViewports(filled.item.picture, image, helpers_);
 }
 
 hal::Result<std::span<const std::uint8_t>> PanoramaPublisher::Compress(
@@ -90,16 +96,17 @@ hal::Result<std::span<const std::uint8_t>> PanoramaPublisher::Compress(
     return jpeg;
 }
 
-void PanoramaPublisher::SendImage(const Item& item, std::span<const std::uint8_t> jpeg) {
+hal::PanoramaImage PanoramaPublisher::ImageOf(const Item& item,
+                                              std::span<const std::uint8_t> jpeg) const {
     const hal::FrameView& picture = item.picture;
-    Count(publisher_.Publish(hal::PanoramaImage{.sequence = picture.header.sequence,
-                                                .captured_from = picture.header.captured_at,
-                                                .captured_until = item.captured_until,
-                                                .width_px = picture.format.width_px,
-                                                .height_px = picture.format.height_px,
-                                                .cameras_missing = item.status.cameras_missing,
-                                                .calibration_id = options_.calibration_id,
-                                                .jpeg = jpeg}));
+    return {.sequence = picture.header.sequence,
+            .captured_from = picture.header.captured_at,
+            .captured_until = item.captured_until,
+            .width_px = picture.format.width_px,
+            .height_px = picture.format.height_px,
+            .cameras_missing = item.status.cameras_missing,
+            .calibration_id = options_.calibration_id,
+            .jpeg = jpeg};
 }
 
 void PanoramaPublisher::SendStatus(const Item& item) {
@@ -109,7 +116,7 @@ void PanoramaPublisher::SendStatus(const Item& item) {
     // A recording that is not paced was never captured at a moment of this clock.
     if (options_.drop_when_late)
         times_.latency.Add(status.published_at - item.picture.header.captured_at);
-    Count(publisher_.Publish(status));
+    counts_.Count(publisher_.Publish(status));
 }
 
 void PanoramaPublisher::SendHitchAngles() {
@@ -117,13 +124,13 @@ void PanoramaPublisher::SendHitchAngles() {
     while (auto angle = beside_.telemetry->Take()) {
         if (!options_.live_telemetry)
             angle->received_at += hal::Instant(start_ns_.load(std::memory_order_acquire));
-        Count(publisher_.Publish(*angle));
+        counts_.Count(publisher_.Publish(*angle));
     }
 }
 
 void PanoramaPublisher::SendEvents() {
     if (beside_.events == nullptr) return;
-    while (const auto event = beside_.events->Take()) Count(publisher_.Publish(*event));
+    while (const auto event = beside_.events->Take()) counts_.Count(publisher_.Publish(*event));
 }
 
 void PanoramaPublisher::SendHealth() {
@@ -133,7 +140,7 @@ void PanoramaPublisher::SendHealth() {
     auto health = beside_.watch->MaybeHealth(now);
     if (!health) return;
     Complete(*health);
-    Count(publisher_.Publish(*health));
+    counts_.Count(publisher_.Publish(*health));
 }
 
 void PanoramaPublisher::Complete(hal::Health& health) const {
@@ -143,10 +150,6 @@ void PanoramaPublisher::Complete(hal::Health& health) const {
     health.stages.Add(StageHealthOf("jpeg", times_.jpeg));
     health.stages.Add(StageHealthOf("send", times_.send));
     health.stages.Add(StageHealthOf("latency", times_.latency));
-}
-
-void PanoramaPublisher::Count(const hal::Result<hal::Done>& outcome) {
-    (outcome ? published_ : refused_).fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace hitchview::app

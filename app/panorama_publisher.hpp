@@ -7,6 +7,7 @@
 #include "app/event_queue.hpp"
 #include "app/jpeg_encoder.hpp"
 #include "app/run_watch.hpp"
+#include "app/side_channels.hpp"
 #include "app/stage_times.hpp"
 #include "app/telemetry_thread.hpp"
 #include "app/worker_pool.hpp"
@@ -27,6 +28,7 @@ struct PanoramaPublisherOptions {
     bool live_telemetry = false;
     /// Threads that compress; beyond JpegEncoder::kSlices they do not help.
     int threads = 1;
+    SideSources side{};  ///< what is sent beside the panoramas and made of them
 };
 
 /// What is sent beside the panoramas; null: nothing of the kind.
@@ -70,9 +72,11 @@ class PanoramaPublisher {
 
     [[nodiscard]] std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
     [[nodiscard]] std::uint64_t published() const {
-        return published_.load(std::memory_order_relaxed);
+        return counts_.published.load(std::memory_order_relaxed);
     }
-    [[nodiscard]] std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
+    [[nodiscard]] std::uint64_t refused() const {
+        return counts_.refused.load(std::memory_order_relaxed);
+    }
 
  private:
     struct Filled {
@@ -86,13 +90,13 @@ class PanoramaPublisher {
     void Work();
     void Send(Filled& filled);
     hal::Result<std::span<const std::uint8_t>> Compress(const hal::FrameView& picture);
-    void SendImage(const Item& item, std::span<const std::uint8_t> jpeg);
+    [[nodiscard]] hal::PanoramaImage ImageOf(const Item& item,
+                                             std::span<const std::uint8_t> jpeg) const;
     void SendStatus(const Item& item);
     void SendHitchAngles();
     void SendEvents();
     void SendHealth();
     void Complete(hal::Health& health) const;
-    void Count(const hal::Result<hal::Done>& outcome);
 
     hal::Publisher& publisher_;
     const hal::Clock& clock_;
@@ -108,8 +112,8 @@ class PanoramaPublisher {
     int newest_quality_ = 0;
     std::atomic<hal::Instant::rep> start_ns_{0};
     std::atomic<std::uint64_t> dropped_{0};
-    std::atomic<std::uint64_t> published_{0};
-    std::atomic<std::uint64_t> refused_{0};
+    PublishCounts counts_;
+    SideChannels side_;
     std::thread thread_;
 };
 

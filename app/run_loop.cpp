@@ -167,7 +167,7 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
         if (!prepared) return prepared.error();
     }
     const algo::UnifiedVertexMotionOptions motion_options = MotionOptions(config, options);
-    const int held = motion_options.lookahead_frames + 2;
+    const int held = motion_options.lookahead_frames + 2 + RunOutputs::HeldFrames(config, options);
     auto board = Board::Open(config, held);
     if (!board) return board.error();
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
@@ -197,7 +197,7 @@ hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& optio
     for (const hal::Event& event : CalibrationMismatches(config, *calibration, now))
         (*board)->events().Put(event);
     if (const auto made = MakeFolder(options.out); !made) return made.error();
-    auto outputs = RunOutputs::Open(config, options, **board, summary, pipeline.format());
+    auto outputs = RunOutputs::Open(config, options, {**board, rig.value(), pipeline}, summary);
     if (!outputs) return outputs.error();
     if (options.realtime) EnterRealTime(config.schedule);
     PanoramaLoop loop({**board, *motion.any, pipeline, **outputs}, options, summary);

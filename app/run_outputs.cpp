@@ -84,6 +84,10 @@ ReceiveBufferVerdict ReceiveBuffer(const PublishConfig& publish) {
                               publish.fit_receive_buffer);
 }
 
+hal::Instant PeriodOf(double rate_hz) {
+    return hal::Instant(static_cast<hal::Instant::rep>(1e9 / rate_hz));
+}
+
 /// Why a video cannot be continued.
 std::string Refusal(VideoWriter& video) {
     return "cannot write the video: " + video.Finish().error();
@@ -92,16 +96,23 @@ std::string Refusal(VideoWriter& video) {
 }  // namespace
 
 hal::Checked<std::unique_ptr<RunOutputs>> RunOutputs::Open(const RigConfig& config,
-                                                           const RunOptions& options, Board& board,
-                                                           const RunSummary& run,
-                                                           const hal::FrameFormat& format) {
+                                                           const RunOptions& options,
+                                                           const Parts& parts,
+                                                           const RunSummary& run) {
     std::unique_ptr<RunOutputs> outputs(new RunOutputs);
+    const hal::FrameFormat& format = parts.pipeline.format();
     if (const auto videos = outputs->OpenVideos(options, run, format); !videos)
         return videos.error();
-    if (const auto network = outputs->OpenNetwork(config, options, board, run, format); !network) {
+    if (!options.publish) return outputs;
+    if (const auto network = outputs->OpenNetwork(config, options, parts, run); !network)
         return network.error();
-    }
+    parts.pipeline.SetShownSets(outputs.get());
+    outputs->pipeline_ = &parts.pipeline;
     return outputs;
+}
+
+RunOutputs::~RunOutputs() {
+    if (pipeline_ != nullptr) pipeline_->SetShownSets(nullptr);
 }
 
 hal::Checked<hal::Done> RunOutputs::OpenVideos(const RunOptions& options, const RunSummary& run,
@@ -125,25 +136,51 @@ hal::Checked<hal::Done> RunOutputs::OpenVideos(const RunOptions& options, const 
     return hal::Done{};
 }
 
+void RunOutputs::OpenTelemetry(const RigConfig& config, Board& board) {
+    can_bus_ = board.can_bus();
+    if (can_bus_ == nullptr) return;
+    const bool live = board.is_can_live();
+    telemetry_ = std::make_unique<TelemetryThread>(
+        *can_bus_, config.can->hitch_angle,
+        TelemetryOptions{.paced = !live, .clock = live ? &board.clock() : nullptr});
+}
+
+hal::Checked<SideSources> RunOutputs::OpenSideSources(const RigConfig& config, const Parts& parts) {
+    const PublishConfig& publish = config.publish;
+    auto viewports = MakeViewports(publish, parts.rig.canvas);
+    if (!viewports) return config.file.string() + ": " + viewports.error();
+    if (publish.overlay.rate_hz > 0) {
+        overlay_ = std::make_unique<OverlayMaker>(parts.rig, parts.pipeline.map().block_px(),
+                                                  PeriodOf(publish.overlay.rate_hz));
+    }
+    if (publish.preview.rate_hz > 0) {
+        PreviewOptions options{.cameras = {}, .period = PeriodOf(publish.preview.rate_hz)};
+        for (const algo::Unit unit : algo::kUnits) {
+            for (const CameraConfig& camera : config.units[unit].cameras)
+                options.cameras[unit].push_back(camera.name);
+        }
+        previews_ = std::make_unique<PreviewThread>(options);
+    }
+    return SideSources{.viewports = std::move(*viewports),
+                       .highest_quality = publish.jpeg_quality,
+                       .overlay = overlay_.get(),
+                       .previews = previews_.get()};
+}
+
 hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const RunOptions& options,
-                                                Board& board, const RunSummary& run,
-                                                const hal::FrameFormat& format) {
-    if (!options.publish) return hal::Done{};
+                                                const Parts& parts, const RunSummary& run) {
+    Board& board = parts.board;
     auto network = board.OpenPublisher(config.publish);
     if (!network) return network.error();
     network_ = std::move(*network);
-    can_bus_ = board.can_bus();
-    if (can_bus_ != nullptr) {
-        const bool live = board.is_can_live();
-        telemetry_ = std::make_unique<TelemetryThread>(
-            *can_bus_, config.can->hitch_angle,
-            TelemetryOptions{.paced = !live, .clock = live ? &board.clock() : nullptr});
-    }
     clock_ = &board.clock();
-    const bool seams = run.cameras[algo::Unit::kTrailer] > 0;
+    OpenTelemetry(config, board);
+    auto side = OpenSideSources(config, parts);
+    if (!side) return side.error();
     const ReceiveBufferVerdict buffer = ReceiveBuffer(config.publish);
     if (!buffer.warning.view().empty())
         std::fprintf(stderr, "publish: %s\n", buffer.warning.c_str());
+    const bool seams = run.cameras[algo::Unit::kTrailer] > 0;
     watch_ =
         std::make_unique<RunWatch>(RunWatchOptions{.health = HealthOf(config, options, board, run),
                                                    .overlaps = {{seams && run.ring, seams}},
@@ -154,13 +191,14 @@ hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, const R
     publisher_ = std::make_unique<PanoramaPublisher>(
         *network_, board.clock(),
         SentBeside{.telemetry = telemetry_.get(), .events = &board.events(), .watch = watch_.get()},
-        format,
+        parts.pipeline.format(),
         PanoramaPublisherOptions{.jpeg = {.budget_bytes = buffer.budget_bytes,
                                           .highest_quality = config.publish.jpeg_quality},
                                  .calibration_id = run.calibration_id,
                                  .drop_when_late = options.realtime,
                                  .live_telemetry = board.is_can_live(),
-                                 .threads = options.workers.value_or(config.workers)});
+                                 .threads = options.workers.value_or(config.workers),
+                                 .side = std::move(*side)});
     return hal::Done{};
 }
 
@@ -188,9 +226,19 @@ void RunOutputs::Publish(const ShownPanorama& shown, const Pipeline& pipeline,
     hal::FrameView picture = shown.picture;
     picture.header.captured_at += start_;
     const hal::PanoramaStatus status = Status(shown, run, start_);
+    if (overlay_) {
+        overlay_->Offer({status.sequence, status.captured_from}, *shown.composition, pipeline.map(),
+                        clock_->Now());
+    }
     watch_->Add(Figures(status, shown, start_, pipeline, run));
     publisher_->Append(
         {.picture = picture, .captured_until = start_ + shown.captured_until, .status = status});
+}
+
+void RunOutputs::DoOffer(FrameSet& set) {
+    if (!previews_) return;
+    const hal::Instant now = clock_->Now();
+    if (previews_->IsDue(now)) previews_->Give(std::move(set), start_, now);
 }
 
 void RunOutputs::AddPools(std::vector<PoolSummary>& pools) const {
@@ -212,6 +260,7 @@ std::optional<CanSummary> RunOutputs::can() const {
 
 hal::Checked<hal::Done> RunOutputs::Finish() {
     if (publisher_) publisher_->Finish();
+    if (previews_) previews_->Finish();
     for (VideoWriter* video : {panorama_.get(), views_[algo::Unit::kTractor].get(),
                                views_[algo::Unit::kTrailer].get()}) {
         if (video == nullptr) continue;

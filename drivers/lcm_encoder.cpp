@@ -1,7 +1,5 @@
 #include "drivers/lcm_encoder.hpp"
 
-#include <array>
-#include <charconv>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -9,11 +7,13 @@
 #include <utility>
 
 #include "drivers/lcm_health_message.hpp"
+#include "drivers/lcm_image_properties.hpp"
 #include "drivers/lcm_url.hpp"
 #include "lcmtypes/bot_core_image_t.h"
 #include "lcmtypes/hitchview_event_t.h"
 #include "lcmtypes/hitchview_health_t.h"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
+#include "lcmtypes/hitchview_overlay_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 
 namespace hitchview::drivers {
@@ -51,54 +51,8 @@ static_assert(int(Code::kReceiveBufferSmall) == HITCHVIEW_EVENT_T_RECEIVE_BUFFER
 
 /// Room for everything in an image message that is not its JPEG.
 constexpr int kEnvelopeBytes = 1024;
-/// Of what is no image: a health message with all its cameras and stages.
-constexpr int kLargestOtherBytes = 8192;
-
-/// The properties of a panorama as printable text, in memory of its own.
-class PanoramaMetadata {
- public:
-    explicit PanoramaMetadata(const hal::PanoramaImage& image) {
-        AddNumber("sequence", image.sequence);
-        AddNumber("captured_from_ns", image.captured_from.count());
-        AddNumber("captured_until_ns", image.captured_until.count());
-        AddMask("cameras_missing", image.cameras_missing);
-        Add("calibration_id", image.calibration_id);
-    }
-
-    PanoramaMetadata(const PanoramaMetadata&) = delete;
-    PanoramaMetadata& operator=(const PanoramaMetadata&) = delete;
-
-    [[nodiscard]] std::span<bot_core_image_metadata_t> entries() { return entries_; }
-
- private:
-    using Text = std::array<char, 24>;
-
-    void AddNumber(const char* key, std::int64_t value) {
-        Text& text = texts_.at(count_);
-        const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-        Add(key, {text.data(), static_cast<std::size_t>(end - text.data())});
-    }
-
-    void AddMask(const char* key, std::uint32_t mask) {
-        constexpr std::string_view kDigits = "0123456789abcdef";
-        Text& text = texts_.at(count_);
-        text = {'0', 'x'};
-        for (int i = 0; i < 8; ++i) text.at(2 + i) = kDigits[mask >> (28 - 4 * i) & 0xF];
-        Add(key, {text.data(), 10});
-    }
-
-    // The generated type has no const members; encoding only reads them.
-    void Add(const char* key, std::string_view value) {
-        const auto* bytes = reinterpret_cast<const std::uint8_t*>(value.data());
-        entries_.at(count_++) = {.key = const_cast<char*>(key),
-                                 .n = static_cast<std::int32_t>(value.size()),
-                                 .value = const_cast<std::uint8_t*>(bytes)};
-    }
-
-    std::array<bot_core_image_metadata_t, 5> entries_{};
-    std::array<Text, 5> texts_{};
-    std::size_t count_ = 0;
-};
+/// Of what is no image: an overlay of a canvas of 4096 rows.
+constexpr int kLargestOtherBytes = 32768;
 
 Checked<Done> Check(const LcmEncoderOptions& options) {
     const std::pair<const char*, const std::string&> channels[] = {
@@ -106,7 +60,8 @@ Checked<Done> Check(const LcmEncoderOptions& options) {
         {"status_channel", options.status_channel},
         {"hitch_angle_channel", options.hitch_angle_channel},
         {"event_channel", options.event_channel},
-        {"health_channel", options.health_channel}};
+        {"health_channel", options.health_channel},
+        {"overlay_channel", options.overlay_channel}};
     for (const auto& [key, channel] : channels) {
         if (auto name = CheckLcmChannel(key, channel); !name) return name;
     }
@@ -131,21 +86,41 @@ LcmEncoder::LcmEncoder(const LcmEncoderOptions& options, const hal::Clock& clock
       other_buffer_(kLargestOtherBytes) {}
 
 template <typename Message>
-Result<LcmMessage> LcmEncoder::Write(const std::string& channel, const Message& message,
+Result<LcmMessage> LcmEncoder::Write(const char* channel, const Message& message,
                                      int (*encode)(void*, int, int, const Message*)) {
     constexpr bool kIsImage = std::is_same_v<Message, bot_core_image_t>;
     std::vector<std::uint8_t>& buffer = kIsImage ? buffer_ : other_buffer_;
     const int bytes = encode(buffer.data(), 0, static_cast<int>(buffer.size()), &message);
     if (bytes < 0) return Error::kTooLarge;
-    return LcmMessage{.channel = channel.c_str(),
+    return LcmMessage{.channel = channel,
                       .utime_us = message.utime,
                       .bytes = {buffer.data(), static_cast<std::size_t>(bytes)}};
 }
 
 Result<LcmMessage> LcmEncoder::Encode(const hal::PanoramaImage& image) {
+    LcmImageProperties properties(image);
+    return EncodeImage(options_.panorama_channel.c_str(), image, properties);
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::ViewportImage& viewport) {
+    LcmImageProperties properties(viewport.image);
+    return EncodeImage(viewport.channel, viewport.image, properties);
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::PreviewImage& preview) {
+    LcmImageProperties properties(preview);
+    return EncodeImage(preview.channel,
+                       {.captured_from = preview.captured_at,
+                        .width_px = preview.width_px,
+                        .height_px = preview.height_px,
+                        .jpeg = preview.jpeg},
+                       properties);
+}
+
+Result<LcmMessage> LcmEncoder::EncodeImage(const char* channel, const hal::PanoramaImage& image,
+                                           LcmImageProperties& properties) {
     const auto limit = static_cast<std::size_t>(options_.max_image_bytes);
     if (image.jpeg.size() > limit) return Error::kTooLarge;
-    PanoramaMetadata metadata(image);
     const bot_core_image_t message{
         .utime = clock_.EpochMicroseconds(image.captured_from),
         .width = image.width_px,
@@ -154,10 +129,10 @@ Result<LcmMessage> LcmEncoder::Encode(const hal::PanoramaImage& image) {
         .pixelformat = BOT_CORE_IMAGE_T_PIXEL_FORMAT_MJPEG,
         .size = static_cast<std::int32_t>(image.jpeg.size()),
         .data = const_cast<std::uint8_t*>(image.jpeg.data()),
-        .nmetadata = static_cast<std::int32_t>(metadata.entries().size()),
-        .metadata = metadata.entries().data(),
+        .nmetadata = static_cast<std::int32_t>(properties.entries().size()),
+        .metadata = properties.entries().data(),
     };
-    return Write(options_.panorama_channel, message, bot_core_image_t_encode);
+    return Write(channel, message, bot_core_image_t_encode);
 }
 
 Result<LcmMessage> LcmEncoder::Encode(const hal::PanoramaStatus& status) {
@@ -179,7 +154,7 @@ Result<LcmMessage> LcmEncoder::Encode(const hal::PanoramaStatus& status) {
     };
     message.seam_state[0] = static_cast<std::int8_t>(status.seams[0]);
     message.seam_state[1] = static_cast<std::int8_t>(status.seams[1]);
-    return Write(options_.status_channel, message, hitchview_panorama_status_t_encode);
+    return Write(options_.status_channel.c_str(), message, hitchview_panorama_status_t_encode);
 }
 
 Result<LcmMessage> LcmEncoder::Encode(const hal::HitchAngle& angle) {
@@ -194,7 +169,7 @@ Result<LcmMessage> LcmEncoder::Encode(const hal::HitchAngle& angle) {
         .quality = static_cast<std::int8_t>(angle.quality),
         .angle_rad = valid ? angle.angle_rad : kNotANumber,
     };
-    return Write(options_.hitch_angle_channel, message, hitchview_hitch_angle_t_encode);
+    return Write(options_.hitch_angle_channel.c_str(), message, hitchview_hitch_angle_t_encode);
 }
 
 Result<LcmMessage> LcmEncoder::Encode(const hal::Event& event) {
@@ -207,13 +182,37 @@ Result<LcmMessage> LcmEncoder::Encode(const hal::Event& event) {
         .subject = const_cast<char*>(event.subject.c_str()),
         .text = const_cast<char*>(event.text.c_str()),
     };
-    return Write(options_.event_channel, message, hitchview_event_t_encode);
+    return Write(options_.event_channel.c_str(), message, hitchview_event_t_encode);
 }
 
 Result<LcmMessage> LcmEncoder::Encode(const hal::Health& health) {
     const LcmHealthMessage message(health, health_sequence_++,
                                    clock_.EpochMicroseconds(health.measured_at));
-    return Write(options_.health_channel, message.get(), hitchview_health_t_encode);
+    return Write(options_.health_channel.c_str(), message.get(), hitchview_health_t_encode);
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::Overlay& overlay) {
+    // The generated type has no const members; encoding only reads them.
+    const auto borrow = [](std::span<const float> values) {
+        return const_cast<float*>(values.data());
+    };
+    const hitchview_overlay_t message{
+        .sequence = static_cast<std::int32_t>(overlay.sequence),
+        .utime = clock_.EpochMicroseconds(overlay.captured_from),
+        .capture_ns = overlay.captured_from.count(),
+        .width = overlay.width_px,
+        .height = overlay.height_px,
+        .mesh_rows = overlay.mesh_rows,
+        .mesh_cols = overlay.mesh_cols,
+        .nvertices = static_cast<std::int32_t>(overlay.mesh_x.size()),
+        .mesh_x = borrow(overlay.mesh_x),
+        .mesh_y = borrow(overlay.mesh_y),
+        .seam_rows = static_cast<std::int32_t>(overlay.seam_y.size()),
+        .seam_y = borrow(overlay.seam_y),
+        .left_seam_x = borrow(overlay.left_seam_x),
+        .right_seam_x = borrow(overlay.right_seam_x),
+    };
+    return Write(options_.overlay_channel.c_str(), message, hitchview_overlay_t_encode);
 }
 
 }  // namespace hitchview::drivers
