@@ -17,6 +17,7 @@ namespace hitchview::drivers {
 struct LcmSubscriberOptions {
     std::string url = kDefaultLcmUrl;
     std::string channel = "PANORAMA";
+    std::string health_channel = "PANORAMA_HEALTH";
     int max_message_bytes = 9 << 20;  ///< larger ones are refused. [1024, 67108864]
 };
 
@@ -34,14 +35,20 @@ class LcmSubscriber {
     /// it does not fit max_message_bytes. kFailed: LCM gave up.
     hal::Result<hal::PanoramaImage> WaitImage(std::chrono::milliseconds timeout);
 
+    /// Of the publisher's cameras, as the newest sound health message tells; empty before one came.
+    [[nodiscard]] const std::vector<std::string>& camera_names() const { return camera_names_; }
+
     [[nodiscard]] std::uint64_t received() const { return received_; }  ///< sound ones, since start
     [[nodiscard]] std::uint64_t refused() const { return refused_; }    ///< the others, since start
 
  private:
     LcmSubscriber(const LcmSubscriberOptions& options, LcmHandle lcm);
 
-    bool Subscribe(const std::string& channel);
+    using Handler = void (LcmSubscriber::*)(std::span<const std::uint8_t> message);
+    template <Handler kHandler>
+    bool Subscribe(const std::string& channel, int most_waiting);
     void OnMessage(std::span<const std::uint8_t> message);
+    void OnHealth(std::span<const std::uint8_t> message);
 
     static constexpr int kMostWaiting = 8;
 
@@ -49,6 +56,7 @@ class LcmSubscriber {
     bool live_;  // messages come whether they are taken or not
     std::vector<std::uint8_t> message_;
     hal::Result<hal::PanoramaImage> image_ = hal::Error::kTimeout;
+    std::vector<std::string> camera_names_;
     std::uint64_t received_ = 0;
     std::uint64_t refused_ = 0;
 };
