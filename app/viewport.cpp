@@ -85,7 +85,7 @@ hal::Checked<std::vector<Viewport>> MakeViewports(const PublishConfig& publish,
 
 void CropViewport(const hal::FrameView& panorama, const Viewport& viewport,
                   std::span<std::uint8_t> crop) {
-    const auto [channel, x, y, width, height, every, max_bytes] = viewport;
+    const auto& [channel, x, y, width, height, every, max_bytes] = viewport;
     const int canvas_width = panorama.format.width_px;
     std::uint8_t* const chroma = crop.data() + static_cast<std::ptrdiff_t>(width) * height;
     const std::array<int, 4> half{x / 2, y / 2, width / 2, height / 2};
