@@ -25,7 +25,9 @@ TEST(LcmHeapTest, PublishingTakesNoMemory) {
                    publisher.value()->Publish(hal::PanoramaStatus{}).ok() &&
                    publisher.value()->Publish(hal::HitchAngle{}).ok() &&
                    publisher.value()->Publish(hal::Event{}).ok() &&
-                   publisher.value()->Publish(hal::Health{}).ok() && all_sent;
+                   publisher.value()->Publish(hal::Health{}).ok() &&
+                   publisher.value()->Publish(hal::Overlay{}).ok() &&
+                   publisher.value()->Publish(hal::PreviewImage{"PREVIEW_A"}).ok() && all_sent;
     }
     EXPECT_EQ(HeapCallsOfThisThread(), before);
     EXPECT_TRUE(all_sent);

@@ -15,6 +15,7 @@
 #include "lcmtypes/hitchview_event_t.h"
 #include "lcmtypes/hitchview_health_t.h"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
+#include "lcmtypes/hitchview_overlay_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 #include "tests/support/small_drive.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -187,6 +188,29 @@ TEST_F(LcmRunTest, EveryPanoramaAndTheHitchAngleArriveAtOtherPrograms) {
         EXPECT_NEAR(static_cast<double>(angle.capture_ns - start_ns),
                     static_cast<double>(at.count()), 1e6);
     }
+}
+
+TEST_F(LcmRunTest, PreviewsOfAllCamerasAndOverlaysAreSentBesides) {
+    Run("");
+    int cameras = 0;
+    for (const auto& [channel, messages] : log_) {
+        if (!channel.starts_with("PREVIEW_")) continue;
+        ++cameras;
+        EXPECT_GE(messages.size(), 2U) << channel;
+        EXPECT_LE(messages.size(), 8U) << channel;
+    }
+    EXPECT_EQ(cameras, 8);
+    const auto& overlays = log_["PANORAMA_OVERLAY"];
+    ASSERT_GE(overlays.size(), 3U);
+    EXPECT_LE(overlays.size(), 17U);
+    hitchview_overlay_t overlay{};
+    ASSERT_GT(hitchview_overlay_t_decode(overlays.back().data(), 0,
+                                         static_cast<int>(overlays.back().size()), &overlay),
+              0);
+    EXPECT_EQ(overlay.width, 2048);
+    EXPECT_EQ(overlay.nvertices, 2 * overlay.mesh_rows * overlay.mesh_cols);
+    EXPECT_GT(overlay.seam_rows, 10);
+    hitchview_overlay_t_decode_cleanup(&overlay);
 }
 
 TEST_F(LcmRunTest, WithoutACanBusNoHitchAngleIsSent) {

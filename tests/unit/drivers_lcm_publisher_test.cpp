@@ -12,6 +12,7 @@
 #include "lcmtypes/hitchview_event_t.h"
 #include "lcmtypes/hitchview_health_t.h"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
+#include "lcmtypes/hitchview_overlay_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 
 namespace hitchview::drivers {
@@ -329,6 +330,75 @@ TEST_F(LcmPublisherTest, TheLongestHealthFits) {
     EXPECT_EQ(message.ncameras, 8);
     EXPECT_EQ(message.nstages, 12);
     hitchview_health_t_decode_cleanup(&message);
+}
+
+TEST_F(LcmPublisherTest, AViewportIsAnImageWithThePanoramasProperties) {
+    hal::ViewportImage viewport{.channel = "VIEW_REAR", .image = Image(kJpeg)};
+    viewport.image.width_px = 340;
+    ASSERT_TRUE(Publisher()->Publish(viewport));
+
+    auto message = Read("VIEW_REAR", bot_core_image_t_decode);
+    EXPECT_EQ(message.width, 340);
+    ASSERT_EQ(message.nmetadata, 5);
+    EXPECT_EQ(Text(message.metadata[0]), "sequence=4000000000");
+    EXPECT_EQ(Text(message.metadata[3]), "cameras_missing=0x00000081");
+    bot_core_image_t_decode_cleanup(&message);
+}
+
+TEST_F(LcmPublisherTest, APreviewIsAnImageWithItsNumberAndMoment) {
+    ASSERT_TRUE(Publisher()->Publish(hal::PreviewImage{.channel = "PREVIEW_REAR",
+                                                       .sequence = 12,
+                                                       .captured_at = milliseconds(20),
+                                                       .width_px = 192,
+                                                       .height_px = 108,
+                                                       .jpeg = kJpeg}));
+
+    auto message = Read("PREVIEW_REAR", bot_core_image_t_decode);
+    EXPECT_EQ(message.utime, 1'700'000'000'020'000);
+    EXPECT_EQ(message.width, 192);
+    EXPECT_EQ(message.height, 108);
+    EXPECT_EQ(std::vector<std::uint8_t>(message.data, message.data + message.size), kJpeg);
+    ASSERT_EQ(message.nmetadata, 2);
+    EXPECT_EQ(Text(message.metadata[0]), "sequence=12");
+    EXPECT_EQ(Text(message.metadata[1]), "captured_ns=20000000");
+    bot_core_image_t_decode_cleanup(&message);
+}
+
+TEST_F(LcmPublisherTest, AnOverlayKeepsEveryField) {
+    const std::vector<float> x{1, 2, 3, 4};
+    const std::vector<float> y{5, 6, 7, 8};
+    const std::vector<float> rows{-0.5F, 7.5F, 15.5F};
+    const std::vector<float> left{100, 101, 102};
+    const std::vector<float> right{200, 201, 202};
+    ASSERT_TRUE(Publisher()->Publish(hal::Overlay{.sequence = 9,
+                                                  .captured_from = milliseconds(30),
+                                                  .width_px = 2048,
+                                                  .height_px = 360,
+                                                  .mesh_rows = 1,
+                                                  .mesh_cols = 2,
+                                                  .mesh_x = x,
+                                                  .mesh_y = y,
+                                                  .seam_y = rows,
+                                                  .left_seam_x = left,
+                                                  .right_seam_x = right}));
+
+    auto message = Read("PANORAMA_OVERLAY", hitchview_overlay_t_decode);
+    const auto values = [](const float* first, int count) {
+        return std::vector<float>(first, first + count);
+    };
+    EXPECT_EQ(message.sequence, 9);
+    EXPECT_EQ(message.utime, 1'700'000'000'030'000);
+    EXPECT_EQ(message.capture_ns, 30'000'000);
+    EXPECT_EQ(message.width, 2048);
+    EXPECT_EQ(message.height, 360);
+    EXPECT_EQ(message.mesh_rows, 1);
+    EXPECT_EQ(message.mesh_cols, 2);
+    EXPECT_EQ(values(message.mesh_x, message.nvertices), x);
+    EXPECT_EQ(values(message.mesh_y, message.nvertices), y);
+    EXPECT_EQ(values(message.seam_y, message.seam_rows), rows);
+    EXPECT_EQ(values(message.left_seam_x, message.seam_rows), left);
+    EXPECT_EQ(values(message.right_seam_x, message.seam_rows), right);
+    hitchview_overlay_t_decode_cleanup(&message);
 }
 
 TEST(LcmPublisherOptionsTest, AMistakeIsNamed) {
