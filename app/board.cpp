@@ -13,6 +13,7 @@
 #include "drivers/lcm_log_camera.hpp"
 #include "drivers/lcm_log_can_bus.hpp"
 #include "drivers/lcm_publisher.hpp"
+#include "drivers/lcm_receive_buffer.hpp"
 #include "drivers/replay_camera.hpp"
 #include "drivers/simulated_camera.hpp"
 #include "drivers/simulated_can_bus.hpp"
@@ -274,6 +275,12 @@ hal::Checked<std::unique_ptr<hal::Publisher>> Board::OpenPublisher(const Publish
         {.url = config.url, .messages = EncoderOptionsOf(config)}, *clock_);
     if (!publisher) return publisher.error();
     return std::unique_ptr<hal::Publisher>(std::move(*publisher));
+}
+
+std::optional<int> Board::ReceiveBufferBytes() {
+    const auto buffers = drivers::ReadSocketBuffers();
+    if (!buffers) return std::nullopt;
+    return buffers->largest_bytes;
 }
 
 }  // namespace hitchview::app

@@ -58,6 +58,8 @@ class Board {
     [[nodiscard]] const std::vector<FrameTap*>& taps() const { return taps_; }
 
     hal::Checked<std::unique_ptr<hal::Publisher>> OpenPublisher(const PublishConfig& config);
+    /// What this system grants a subscriber that asks for a large receive buffer; empty: not known.
+    [[nodiscard]] static std::optional<int> ReceiveBufferBytes();
 
  private:
     explicit Board(const Options& options);

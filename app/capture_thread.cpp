@@ -55,6 +55,9 @@ void CaptureThread::NoteLost(hal::Instant now) {
     lost_at_ = now;
     Tell(hal::EventCode::kCameraLost, now,
          hal::EventText("lost: ").Append(hal::ToString(camera_.loss())));
+    if (camera_.loss() == hal::CameraLoss::kOtherFormat)
+        Tell(hal::EventCode::kCalibrationMismatch, now,
+             {"gives another size or format than the rig was set up with"});
 }
 
 void CaptureThread::Tell(hal::EventCode code, hal::Instant when, const hal::EventText& text) {

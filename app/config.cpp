@@ -141,7 +141,8 @@ RigConfig ReadRig(YamlMap& root, ConfigContext& context) {
     if (context.live_cameras > 0 && config.can &&
         config.can->source != CanConfig::Source::kSocketCan)
         can.Refuse("a map with the source {socketcan: NAME} beside live cameras");
-    config.publish = ReadPublish(root["publish"]);
+    config.publish =
+        ReadPublish(root["publish"], config.canvas.projection == Projection::kCylinder);
     config.record = ReadRecord(root["record"], context);
     root.Finish();
     return config;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -210,14 +211,46 @@ struct CanConfig {
     HitchAngleSignal hitch_angle{};
 };
 
+/// A part of the panorama that is sent on a channel of its own. On a ring by azimuth_deg or
+/// columns_px, on a plane by columns_px.
+struct ViewportConfig {
+    std::string name{};     ///< letters, digits and _; unique
+    std::string channel{};  ///< VIEW_ and the name in capitals
+    /// Left and right edge, positive to the left, all that lies to the right of the first up to the
+    /// second. [-360, 360]
+    std::optional<std::array<double, 2>> azimuth_deg{};
+    std::optional<std::array<int, 2>>
+        columns_px{};                             ///< left edge, and the one right of it. [0, 8192]
+    std::optional<std::array<int, 2>> rows_px{};  ///< top edge, and the one below it; all rows
+    int every = 1;                                ///< so many panoramas one is sent. [1, 300]
+    int max_bytes = 60000;                        ///< of one picture. [20000, publish.max_bytes]
+};
+
+/// Pictures of single cameras for whoever looks after the rig.
+struct PreviewConfig {
+    double rate_hz = 2;  ///< 0: none. [0, 5]
+};
+
+/// Seams and meshes of the panorama for whoever wants to see them.
+struct OverlayConfig {
+    std::string channel = "PANORAMA_OVERLAY";
+    double rate_hz = 5;  ///< 0: none. [0, 5]
+};
+
 struct PublishConfig {
     std::string url = "udpm://239.255.76.67:7667?ttl=0";
     std::string panorama_channel = "PANORAMA";  ///< LCM channel, at most 63 characters
     std::string status_channel = "PANORAMA_STATUS";
     std::string hitch_angle_channel = "HITCH_ANGLE";
     std::string event_channel = "PANORAMA_EVENT";
+    std::string health_channel = "PANORAMA_HEALTH";
     int jpeg_quality = 85;   ///< [30, 95]
     int max_bytes = 150000;  ///< of one compressed panorama. [20000, 4000000]
+    /// Panoramas that this system's receive buffers cannot hold are made small enough.
+    bool fit_receive_buffer = true;
+    std::vector<ViewportConfig> viewports{};  ///< at most 8
+    PreviewConfig preview{};
+    OverlayConfig overlay{};
 };
 
 /// How drives are recorded.
@@ -288,6 +321,9 @@ struct RigConfig {
     }
     [[nodiscard]] bool HasUnit(algo::Unit unit) const { return !units[unit].cameras.empty(); }
 };
+
+/// The channel of something that has a name: the prefix and the name in capitals.
+std::string ChannelOf(const std::string& prefix, const std::string& name);
 
 /// Reads and checks a rig file. Relative paths in the result stand relative to the file's folder.
 /// The error has one line `file:line: key.path is VALUE, must be ...` for each mistake.

@@ -10,8 +10,6 @@ using calib::Range;
 using calib::YamlMap;
 using calib::YamlValue;
 
-constexpr std::size_t kMaxChannelLength = 63;  // LCM's own limit
-
 constexpr std::array kProfiles{
     Choice<SimulationConfig::Profile>{"straight", SimulationConfig::Profile::kStraight},
     Choice<SimulationConfig::Profile>{"slalom", SimulationConfig::Profile::kSlalom},
@@ -29,15 +27,6 @@ using LockMemory = RealTimeConfig::LockMemory;
 constexpr std::array kLockMemory{Choice<LockMemory>{"false", LockMemory::kNever},
                                  Choice<LockMemory>{"try", LockMemory::kTry},
                                  Choice<LockMemory>{"required", LockMemory::kRequired}};
-
-void ReadChannel(const YamlValue& value, std::set<std::string>& channels, std::string& out) {
-    value.Read(out);
-    if (!calib::IsName(out) || out.size() > kMaxChannelLength) {
-        value.Refuse("an LCM channel: letters, digits and _, at most 63 characters");
-    } else if (!channels.insert(out).second) {
-        value.Refuse("a channel of its own");
-    }
-}
 
 /// `allowed`: a range or choices.
 template <typename Allowed, typename T>
@@ -138,21 +127,6 @@ RealTimeConfig ReadRealTime(const YamlValue& value) {
     map["lock_memory"].Read(kLockMemory, real_time.lock_memory);
     map.Finish();
     return real_time;
-}
-
-PublishConfig ReadPublish(const YamlValue& value) {
-    PublishConfig publish;
-    YamlMap map = value.Map();
-    map["url"].Read(publish.url);
-    std::set<std::string> channels;
-    ReadChannel(map["panorama_channel"], channels, publish.panorama_channel);
-    ReadChannel(map["status_channel"], channels, publish.status_channel);
-    ReadChannel(map["hitch_angle_channel"], channels, publish.hitch_angle_channel);
-    ReadChannel(map["event_channel"], channels, publish.event_channel);
-    map["jpeg_quality"].Read(Range<int>{30, 95}, publish.jpeg_quality);
-    map["max_bytes"].Read(Range<int>{20000, 4000000}, publish.max_bytes);
-    map.Finish();
-    return publish;
 }
 
 }  // namespace hitchview::app

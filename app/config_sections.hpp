@@ -40,7 +40,8 @@ RealTimeConfig ReadRealTime(const calib::YamlValue& value);
 StitchingConfig ReadStitching(const calib::YamlValue& value);
 /// In config_can.cpp. Reads the DBC file too, if there is one.
 std::optional<CanConfig> ReadCan(const calib::YamlValue& value, const ConfigContext& context);
-PublishConfig ReadPublish(const calib::YamlValue& value);
+/// In config_publish.cpp.
+PublishConfig ReadPublish(const calib::YamlValue& value, bool ring);
 /// In config_record.cpp.
 RecordConfig ReadRecord(const calib::YamlValue& value, const ConfigContext& context);
 

@@ -18,7 +18,7 @@ using ThreadName = std::array<char, 16>;  // as the kernel keeps it
 /// Calls of one thread. It stays after the thread has ended.
 struct ThreadCalls {
     ThreadName name{};
-    bool files = false;
+    std::atomic<bool> files{false};
     std::atomic<std::uint64_t> calls{0};
 };
 
@@ -98,6 +98,15 @@ std::optional<HeapCallCounts> CountHeapCalls() {
         if (!entry.files) counts.threads.push_back({entry.name.data(), entry.calls});
     }
     return counts;
+}
+
+std::optional<std::uint64_t> HeapCallsOfFramePath() {
+    if (!countable) return std::nullopt;
+    std::uint64_t calls = 0;
+    for (std::size_t i = 0; i < EntriesSeen(); ++i) {
+        if (!table[i].files) calls += table[i].calls;
+    }
+    return calls;
 }
 
 void NoteHeapCall() {

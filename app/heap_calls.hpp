@@ -32,6 +32,8 @@ void StopCountingHeapCalls();
 /// Since the last start; empty where the executable does not tell of its heap calls: a build with a
 /// sanitizer, or one without heap_interposer.cpp.
 std::optional<HeapCallCounts> CountHeapCalls();
+/// The sum of the frame path alone, while it is counted. Any thread; takes no memory.
+std::optional<std::uint64_t> HeapCallsOfFramePath();
 
 /// For heap_interposer.cpp, before each call of malloc and its kin. Any thread; takes no memory,
 /// and costs one load while nothing is counted.

@@ -67,6 +67,7 @@ hal::Result<std::span<const std::uint8_t>> JpegEncoder::Encode(const hal::FrameV
 
 std::span<const std::uint8_t> JpegEncoder::Compress(const hal::FrameView& frame, int quality,
                                                     algo::TaskRunner& runner) {
+    newest_quality_ = quality;
     runner.Run(static_cast<int>(slices_.size()), [&](int i) {
         const auto slice = static_cast<std::size_t>(i);
         bands_[slice] = slices_[slice]->Compress(

@@ -40,6 +40,8 @@ class JpegEncoder {
 
     /// Of the next picture.
     [[nodiscard]] int quality() const { return governor_.quality(); }
+    /// Of the newest picture; 0 before the first.
+    [[nodiscard]] int newest_quality() const { return newest_quality_; }
 
  private:
     std::span<const std::uint8_t> Compress(const hal::FrameView& frame, int quality,
@@ -48,6 +50,7 @@ class JpegEncoder {
     hal::FrameFormat format_;
     JpegQualityGovernor governor_;
     std::vector<std::unique_ptr<JpegSlice>> slices_;
+    int newest_quality_ = 0;
     std::size_t slice_bytes_;  ///< between the starts of two slices in output_
     std::vector<std::uint8_t> output_;
     std::vector<std::span<std::uint8_t>> bands_;

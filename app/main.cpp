@@ -8,6 +8,7 @@
 #include "app/bench_verb.hpp"
 #include "app/cameras_verb.hpp"
 #include "app/demo_verb.hpp"
+#include "app/doctor_verb.hpp"
 #include "app/log_arguments.hpp"
 #include "app/program.hpp"
 #include "app/record_verb.hpp"
@@ -201,6 +202,17 @@ CLI::App& AddCameras(CLI::App& app, CamerasOptions& options) {
     return verb;
 }
 
+CLI::App& AddDoctor(CLI::App& app, DoctorOptions& options) {
+    CLI::App& verb = *app.add_subcommand("doctor",
+                                         "Is this machine ready? Each failure with what puts it "
+                                         "right; exit code 1 if there is one.\n"
+                                         "Example: hitchview doctor --rig /etc/hitchview/rig.yaml");
+    verb.add_option("--rig", options.rig, "rig file whose needs are checked")
+        ->check(CLI::ExistingFile);
+    verb.add_flag("--json", options.json, "print JSON instead of a table");
+    return verb;
+}
+
 /// Hands the arguments behind a verb to the program that does it.
 int Forward(const char* program, int argc, char** argv) {
     return RunProgram(SiblingProgram(program), std::vector<std::string>(argv + 2, argv + argc));
@@ -240,6 +252,8 @@ int main(int argc, char** argv) {
     const CLI::App& bench_verb = AddBench(app, bench);
     CamerasOptions cameras;
     const CLI::App& cameras_verb = AddCameras(app, cameras);
+    DoctorOptions doctor;
+    const CLI::App& doctor_verb = AddDoctor(app, doctor);
     CheckOptions check;
     const CLI::App& check_verb = AddCheck(app, check);
     ExportOptions exporting;
@@ -259,6 +273,7 @@ int main(int argc, char** argv) {
     if (scenarios_verb.parsed()) return ScenariosVerb(scenarios, stop);
     if (bench_verb.parsed()) return BenchVerb(bench, stop);
     if (cameras_verb.parsed()) return CamerasVerb(cameras);
+    if (doctor_verb.parsed()) return DoctorVerb(doctor);
     if (check_verb.parsed()) return CheckVerb(check, stop);
     if (export_verb.parsed()) return ExportVerb(exporting, stop);
     return ReplayVerb(run, stop);

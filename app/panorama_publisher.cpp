@@ -24,7 +24,8 @@ PanoramaPublisher::PanoramaPublisher(hal::Publisher& publisher, const hal::Clock
       options_(options),
       pool_(format, options.drop_when_late ? kBuffersInTime : int{kBuffers}),
       encoder_(format, options.jpeg),
-      helpers_(std::min(options.threads, int{JpegEncoder::kSlices}), {}, "publish") {
+      helpers_(std::min(options.threads, int{JpegEncoder::kSlices}), {}, "publish"),
+      side_(publisher, options.side, counts_) {
     while (auto slot = pool_.Take()) free_.Append(*slot);
     thread_ = std::thread([this] { Work(); });
 }
@@ -66,7 +67,9 @@ void PanoramaPublisher::Work() {
             free_.Append(filled->slot);
         }
         SendHitchAngles();
+        SendHealth();
         SendEvents();
+        side_.SendPending();
     }
     SendEvents();  // what happened while the last one was sent
 }
@@ -74,30 +77,38 @@ void PanoramaPublisher::Work() {
 void PanoramaPublisher::Send(Filled& filled) {
     const auto jpeg = Compress(filled.item.picture);
     if (!jpeg) {
-        refused_.fetch_add(1, std::memory_order_relaxed);
+        counts_.Count(jpeg.error());
         return;
     }
-    const StageTimer timer(times_.send);
-    SendImage(filled.item, jpeg.value());
-    SendStatus(filled.item);
+    const hal::PanoramaImage image = ImageOf(filled.item, jpeg.value());
+    {
+        const StageTimer timer(times_.send);
+        counts_.Count(publisher_.Publish(image));
+        SendStatus(filled.item);
+    }
+    side_.SendViewports(filled.item.picture, image, helpers_);
 }
 
 hal::Result<std::span<const std::uint8_t>> PanoramaPublisher::Compress(
     const hal::FrameView& picture) {
     const StageTimer timer(times_.jpeg);
-    return encoder_.Encode(picture, helpers_);
+    const auto jpeg = encoder_.Encode(picture, helpers_);
+    if (jpeg) newest_bytes_ = static_cast<int>(jpeg.value().size());
+    newest_quality_ = encoder_.newest_quality();
+    return jpeg;
 }
 
-void PanoramaPublisher::SendImage(const Item& item, std::span<const std::uint8_t> jpeg) {
+hal::PanoramaImage PanoramaPublisher::ImageOf(const Item& item,
+                                              std::span<const std::uint8_t> jpeg) const {
     const hal::FrameView& picture = item.picture;
-    Count(publisher_.Publish(hal::PanoramaImage{.sequence = picture.header.sequence,
-                                                .captured_from = picture.header.captured_at,
-                                                .captured_until = item.captured_until,
-                                                .width_px = picture.format.width_px,
-                                                .height_px = picture.format.height_px,
-                                                .cameras_missing = item.status.cameras_missing,
-                                                .calibration_id = options_.calibration_id,
-                                                .jpeg = jpeg}));
+    return {.sequence = picture.header.sequence,
+            .captured_from = picture.header.captured_at,
+            .captured_until = item.captured_until,
+            .width_px = picture.format.width_px,
+            .height_px = picture.format.height_px,
+            .cameras_missing = item.status.cameras_missing,
+            .calibration_id = options_.calibration_id,
+            .jpeg = jpeg};
 }
 
 void PanoramaPublisher::SendStatus(const Item& item) {
@@ -107,7 +118,7 @@ void PanoramaPublisher::SendStatus(const Item& item) {
     // A recording that is not paced was never captured at a moment of this clock.
     if (options_.drop_when_late)
         times_.latency.Add(status.published_at - item.picture.header.captured_at);
-    Count(publisher_.Publish(status));
+    counts_.Count(publisher_.Publish(status));
 }
 
 void PanoramaPublisher::SendHitchAngles() {
@@ -116,17 +127,32 @@ void PanoramaPublisher::SendHitchAngles() {
         if (!options_.live_telemetry)
             angle->received_at = hal::Instant(start_ns_.load(std::memory_order_acquire)) +
                                  AtSpeed(angle->received_at, options_.speed);
-        Count(publisher_.Publish(*angle));
+        counts_.Count(publisher_.Publish(*angle));
     }
 }
 
 void PanoramaPublisher::SendEvents() {
     if (beside_.events == nullptr) return;
-    while (const auto event = beside_.events->Take()) Count(publisher_.Publish(*event));
+    while (const auto event = beside_.events->Take()) counts_.Count(publisher_.Publish(*event));
 }
 
-void PanoramaPublisher::Count(const hal::Result<hal::Done>& outcome) {
-    (outcome ? published_ : refused_).fetch_add(1, std::memory_order_relaxed);
+void PanoramaPublisher::SendHealth() {
+    if (beside_.watch == nullptr) return;
+    const hal::Instant now = clock_.Now();
+    beside_.watch->Update(now, dropped());
+    auto health = beside_.watch->MaybeHealth(now);
+    if (!health) return;
+    Complete(*health);
+    counts_.Count(publisher_.Publish(*health));
+}
+
+void PanoramaPublisher::Complete(hal::Health& health) const {
+    health.image_bytes = newest_bytes_;
+    health.image_budget_bytes = options_.jpeg.budget_bytes;
+    health.image_quality = newest_quality_;
+    health.stages.Add(StageHealthOf("jpeg", times_.jpeg));
+    health.stages.Add(StageHealthOf("send", times_.send));
+    health.stages.Add(StageHealthOf("latency", times_.latency));
 }
 
 }  // namespace hitchview::app

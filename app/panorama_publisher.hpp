@@ -6,6 +6,8 @@
 
 #include "app/event_queue.hpp"
 #include "app/jpeg_encoder.hpp"
+#include "app/run_watch.hpp"
+#include "app/side_channels.hpp"
 #include "app/stage_times.hpp"
 #include "app/telemetry_thread.hpp"
 #include "app/worker_pool.hpp"
@@ -27,17 +29,19 @@ struct PanoramaPublisherOptions {
     bool live_telemetry = false;
     /// Threads that compress; beyond JpegEncoder::kSlices they do not help.
     int threads = 1;
+    SideSources side{};  ///< what is sent beside the panoramas and made of them
 };
 
 /// What is sent beside the panoramas; null: nothing of the kind.
 struct SentBeside {
     TelemetryThread* telemetry = nullptr;
     EventQueue* events = nullptr;
+    RunWatch* watch = nullptr;  ///< health, and the events that it puts into `events`
 };
 
 /// Compresses and sends panoramas off the deadline, on a thread of its own (`publish`), which
 /// `publish-1` ... help to compress, and hands on the hitch angles and events that have come
-/// meanwhile. Memory is taken at construction.
+/// meanwhile and, once a second, the program's health. Memory is taken at construction.
 class PanoramaPublisher {
  public:
     /// All that is referred to must outlive this.
@@ -69,9 +73,11 @@ class PanoramaPublisher {
 
     [[nodiscard]] std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
     [[nodiscard]] std::uint64_t published() const {
-        return published_.load(std::memory_order_relaxed);
+        return counts_.published.load(std::memory_order_relaxed);
     }
-    [[nodiscard]] std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
+    [[nodiscard]] std::uint64_t refused() const {
+        return counts_.refused.load(std::memory_order_relaxed);
+    }
 
  private:
     struct Filled {
@@ -85,11 +91,13 @@ class PanoramaPublisher {
     void Work();
     void Send(Filled& filled);
     hal::Result<std::span<const std::uint8_t>> Compress(const hal::FrameView& picture);
-    void SendImage(const Item& item, std::span<const std::uint8_t> jpeg);
+    [[nodiscard]] hal::PanoramaImage ImageOf(const Item& item,
+                                             std::span<const std::uint8_t> jpeg) const;
     void SendStatus(const Item& item);
     void SendHitchAngles();
     void SendEvents();
-    void Count(const hal::Result<hal::Done>& outcome);
+    void SendHealth();
+    void Complete(hal::Health& health) const;
 
     hal::Publisher& publisher_;
     const hal::Clock& clock_;
@@ -101,10 +109,12 @@ class PanoramaPublisher {
     JpegEncoder encoder_;
     WorkerPool helpers_;
     PublishTimes times_;
+    int newest_bytes_ = 0;  // of the newest panorama as JPEG
+    int newest_quality_ = 0;
     std::atomic<hal::Instant::rep> start_ns_{0};
     std::atomic<std::uint64_t> dropped_{0};
-    std::atomic<std::uint64_t> published_{0};
-    std::atomic<std::uint64_t> refused_{0};
+    PublishCounts counts_;
+    SideChannels side_;
     std::thread thread_;
 };
 

@@ -99,7 +99,10 @@ const ShownPanorama* Pipeline::Flush() {
 
 /// Before a new set comes: with the longest lookahead it goes where the one shown last was.
 void Pipeline::ReleaseShown() {
-    if (shown_ > 0) held_[(shown_ - 1) % held_.size()] = FrameSet{};
+    if (shown_ == 0) return;
+    FrameSet& set = held_[(shown_ - 1) % held_.size()];
+    if (shown_sets_ != nullptr) shown_sets_->Offer(set);
+    set = FrameSet{};
 }
 
 const ShownPanorama* Pipeline::Show(const algo::Composition& composition) {

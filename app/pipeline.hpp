@@ -29,6 +29,17 @@ struct ShownPanorama {
 /// The pictures of a frame set, borrowed from its leases.
 algo::RigFrames Borrow(const FrameSet& set);
 
+/// Whoever wants frame sets that the pipeline needs no more. Thread: pipeline.
+class ShownSets {
+ public:
+    virtual ~ShownSets() = default;
+    /// Takes the set, or leaves it alone. Does not wait.
+    void Offer(FrameSet& set) { DoOffer(set); }
+
+ private:
+    virtual void DoOffer(FrameSet& set) = 0;
+};
+
 /// Frame sets in, panoramas out: estimation, composed map, gains, rendering. Memory is taken at
 /// construction. Thread: one.
 class Pipeline {
@@ -40,6 +51,9 @@ class Pipeline {
     bool Prime(const FrameSet& set);
     /// After Prime: what was seen counts as nothing, the layout stays.
     void Start();
+
+    /// Null: nobody. It must outlive the pipeline's work.
+    void SetShownSets(ShownSets* shown_sets) { shown_sets_ = shown_sets; }
 
     /// Empty while the lookahead fills. The set's leases are kept until it was shown.
     const ShownPanorama* Process(FrameSet&& set);
@@ -73,6 +87,7 @@ class Pipeline {
     std::vector<std::uint8_t> panorama_;
     std::vector<std::uint8_t> view_;
     std::array<FrameSet, algo::kMaxLookahead + 1> held_;
+    ShownSets* shown_sets_ = nullptr;
     std::uint64_t taken_ = 0;
     std::uint64_t shown_ = 0;
     ShownPanorama result_;

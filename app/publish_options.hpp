@@ -11,6 +11,8 @@ inline drivers::LcmEncoderOptions EncoderOptionsOf(const PublishConfig& config) 
             .status_channel = config.status_channel,
             .hitch_angle_channel = config.hitch_angle_channel,
             .event_channel = config.event_channel,
+            .health_channel = config.health_channel,
+            .overlay_channel = config.overlay.channel,
             .max_image_bytes = config.max_bytes};
 }
 

@@ -10,6 +10,7 @@ namespace {
 
 using hal::EventCode;
 using hal::EventText;
+using hal::RecordingState;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kBeat{50};
@@ -197,11 +198,11 @@ void Recorder::WatchEpisode() {
     if (now - quiet_since_ > kQuiet) intake_.EndEpisode();
 }
 
-RecorderLevel Recorder::Level() const {
+hal::RecordingHealth Recorder::Level() const {
     return {.state = state_,
-            .bytes = writer_.counts().bytes,
+            .recorded_bytes = writer_.counts().bytes,
             .dropped = intake_.dropped(),
-            .free_bytes = writer_.free_bytes()};
+            .disk_free_bytes = writer_.free_bytes()};
 }
 
 RecordingSummary Recorder::Summarise() const {

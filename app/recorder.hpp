@@ -11,23 +11,9 @@
 #include "app/frame_recorder.hpp"
 #include "app/record_intake.hpp"
 #include "app/record_writer.hpp"
+#include "hal/health.hpp"
 
 namespace hitchview::app {
-
-enum class RecordingState : std::uint8_t {
-    kOff = 0,      ///< as the codes of health_t
-    kArmed = 1,    ///< the last moments are kept in memory until something triggers
-    kOn = 2,       ///< is being written
-    kStopped = 3,  ///< could not go on: an event said why
-};
-
-/// How a recording does.
-struct RecorderLevel {
-    RecordingState state = RecordingState::kOff;
-    std::uint64_t bytes = 0;       ///< written
-    std::uint64_t dropped = 0;     ///< messages that it lacks
-    std::int64_t free_bytes = -1;  ///< of its file system; -1: not known
-};
 
 /// What became of a recording.
 struct RecordingSummary {
@@ -84,7 +70,7 @@ class Recorder {
     void Finish();
 
     /// Any thread.
-    [[nodiscard]] RecorderLevel Level() const;
+    [[nodiscard]] hal::RecordingHealth Level() const;
     /// After Finish. Takes memory.
     [[nodiscard]] RecordingSummary Summarise() const;
 
@@ -110,7 +96,7 @@ class Recorder {
     RecordWriter writer_;
     FrameRecorder frames_;
     bool started_ = false;
-    std::atomic<RecordingState> state_;
+    std::atomic<hal::RecordingState> state_;
     std::atomic<bool> triggered_{false};
     std::atomic<bool> finishing_{false};
     // The thread's.

@@ -9,7 +9,8 @@
 
 namespace hitchview::app {
 
-/// Records what is published. What the recording has no room for is its matter: it counts it.
+/// Records what is published, but for what is made of recorded pictures anyway: viewports, previews
+/// and overlays. What the recording has no room for is its matter: it counts it.
 class RecordingPublisher final : public hal::Publisher {
  public:
     /// `recorder` must outlive it.
@@ -29,6 +30,9 @@ class RecordingPublisher final : public hal::Publisher {
     hal::Result<hal::Done> DoPublish(const hal::Event& event) override {
         recorder_.Note(event);
         return Keep(encoder_->Encode(event));
+    }
+    hal::Result<hal::Done> DoPublish(const hal::Health& health) override {
+        return Keep(encoder_->Encode(health));
     }
     hal::Result<hal::Done> Keep(const hal::Result<drivers::LcmMessage>& message) {
         if (!message) return message.error();

@@ -6,6 +6,7 @@
 #include "algo/offline_unified_vertex_motion.hpp"
 #include "algo/unified_vertex_motion.hpp"
 #include "app/board.hpp"
+#include "app/calibration_mismatch.hpp"
 #include "app/first_sets.hpp"
 #include "app/log_rig.hpp"
 #include "app/panorama_loop.hpp"
@@ -105,6 +106,14 @@ hal::Checked<hal::Done> Learn(Board& board, algo::OfflineUnifiedVertexMotion& mo
     return hal::Done{};
 }
 
+/// Tells the display units why no picture will come; whether they can be told changes nothing.
+void TellRefusal(const RigConfig& config, Board& board, const std::string& why) {
+    const auto network = board.OpenPublisher(config.publish);
+    if (!network) return;
+    [[maybe_unused]] const auto told =
+        network.value()->Publish(CalibrationRefused(why, board.clock().Now()));
+}
+
 /// What is known of a run before its first frame.
 RunSummary EmptySummary(const RigConfig& config, const Board& board, const RigGeometry& rig,
                         const std::optional<calib::RigCalibration>& calibration) {
@@ -163,12 +172,16 @@ hal::Checked<RunSummary> RunRig(const RigConfig& rig_config, const RunOptions& o
         if (!prepared) return prepared.error();
     }
     const algo::UnifiedVertexMotionOptions motion_options = MotionOptions(config, options);
-    const Board::Options opened{.held_frames = motion_options.lookahead_frames + 2,
+    const Board::Options opened{.held_frames = motion_options.lookahead_frames + 2 +
+                                               RunOutputs::HeldFrames(config, options),
                                 .recorded = options.record && !config.record.folder.empty()};
     auto board = Board::Open(config, opened);
     if (!board) return board.error();
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
-    if (!rig) return rig.error();
+    if (!rig) {
+        if (options.publish) TellRefusal(config, **board, rig.error());
+        return rig.error();
+    }
 
     WorkerPool workers(options.workers.value_or(config.workers),
                        options.realtime ? config.schedule : ThreadSchedule{});
@@ -187,8 +200,11 @@ hal::Checked<RunSummary> RunRig(const RigConfig& rig_config, const RunOptions& o
     if (!board) return board.error();
 
     RunSummary summary = EmptySummary(config, **board, rig.value(), *calibration);
+    const hal::Instant now = (*board)->clock().Now();
+    for (const hal::Event& event : CalibrationMismatches(config, *calibration, now))
+        (*board)->events().Put(event);
     if (const auto made = MakeFolder(options.out); !made) return made.error();
-    auto outputs = RunOutputs::Open(config, options, **board, summary, pipeline.format());
+    auto outputs = RunOutputs::Open(config, options, {**board, rig.value(), pipeline}, summary);
     if (!outputs) return outputs.error();
     if (options.realtime) EnterRealTime(config.schedule);
     PanoramaLoop loop({**board, *motion.any, pipeline, **outputs}, options, summary);

@@ -1,5 +1,7 @@
 #include "app/run_outputs.hpp"
 
+#include <cstdio>
+
 #include "app/board.hpp"
 #include "app/playback_speed.hpp"
 #include "app/record_setup.hpp"
@@ -48,6 +50,50 @@ hal::PanoramaStatus Status(const ShownPanorama& shown, const RunSummary& run,
     return status;
 }
 
+FrameFigures Figures(const hal::PanoramaStatus& status, const ShownPanorama& shown,
+                     hal::Instant captured_until, const Pipeline& pipeline, const RunSummary& run) {
+    FrameFigures figures{.panoramas = run.frames,
+                         .dropped = run.dropped,
+                         .deadline_misses = run.deadline_misses,
+                         .cameras_missing = shown.cameras_missing,
+                         .captured_until = captured_until,
+                         .seams = {status.seams},
+                         .matches = {status.seam_matches}};
+    for (std::size_t i = 0; i < figures.stage_ms.size(); ++i)
+        figures.stage_ms[i] = static_cast<float>(pipeline.times()[i].last_ms());
+    return figures;
+}
+
+/// Whose health is told: cameras in the order of the bits of cameras_missing.
+HealthOptions HealthOf(const RigConfig& config, const RunOptions& options, Board& board,
+                       const RunSummary& run, const Recorder* recorder) {
+    HealthOptions health{.version = HITCHVIEW_VERSION,
+                         .calibration_id = run.calibration_id,
+                         .cameras = {},
+                         .paced = options.realtime,
+                         .recorder = recorder};
+    for (const algo::Unit unit : algo::kUnits) {
+        for (std::size_t i = 0; i < config.units[unit].cameras.size(); ++i) {
+            const bool live = board.live() != nullptr;
+            health.cameras.push_back({config.units[unit].cameras[i].name, unit,
+                                      live ? board.cameras()[unit][i].get() : nullptr});
+        }
+    }
+    return health;
+}
+
+/// `sent`: over the network; a recording alone has no receive buffer.
+ReceiveBufferVerdict ReceiveBuffer(const PublishConfig& publish, bool sent) {
+    const bool network = sent && publish.url.find("udpm://") != std::string::npos;
+    return JudgeReceiveBuffer(publish.max_bytes,
+                              network ? Board::ReceiveBufferBytes() : std::nullopt,
+                              publish.fit_receive_buffer);
+}
+
+hal::Instant PeriodOf(double rate_hz) {
+    return hal::Instant(static_cast<hal::Instant::rep>(1e9 / rate_hz));
+}
+
 /// Why a video cannot be continued.
 std::string Refusal(VideoWriter& video) {
     return "cannot write the video: " + video.Finish().error();
@@ -56,19 +102,30 @@ std::string Refusal(VideoWriter& video) {
 }  // namespace
 
 hal::Checked<std::unique_ptr<RunOutputs>> RunOutputs::Open(const RigConfig& config,
-                                                           const RunOptions& options, Board& board,
-                                                           const RunSummary& run,
-                                                           const hal::FrameFormat& format) {
+                                                           const RunOptions& options,
+                                                           const Parts& parts,
+                                                           const RunSummary& run) {
     std::unique_ptr<RunOutputs> outputs(new RunOutputs);
     outputs->speed_ = options.speed;
-    if (const auto videos = outputs->OpenVideos(options, run, format); !videos)
+    if (const auto videos = outputs->OpenVideos(options, run, parts.pipeline.format()); !videos)
         return videos.error();
-    if (const auto recording = outputs->OpenRecording(config, options, board, run); !recording)
+    if (const auto recording = outputs->OpenRecording(config, options, parts.board, run);
+        !recording)
         return recording.error();
-    if (const auto publisher = outputs->OpenPublisher(config, options, board); !publisher)
-        return publisher.error();
-    if (outputs->receivers_) outputs->StartPublishing(config, options, board, run, format);
+    if (options.publish) {
+        if (const auto network = outputs->OpenNetwork(config, parts.board); !network)
+            return network.error();
+    }
+    if (!outputs->receivers_) return outputs;
+    if (const auto started = outputs->StartPublishing(config, options, parts, run); !started)
+        return started.error();
+    parts.pipeline.SetShownSets(outputs.get());
+    outputs->pipeline_ = &parts.pipeline;
     return outputs;
+}
+
+RunOutputs::~RunOutputs() {
+    if (pipeline_ != nullptr) pipeline_->SetShownSets(nullptr);
 }
 
 hal::Checked<hal::Done> RunOutputs::OpenVideos(const RunOptions& options, const RunSummary& run,
@@ -105,9 +162,7 @@ hal::Checked<hal::Done> RunOutputs::OpenRecording(const RigConfig& config,
     return hal::Done{};
 }
 
-hal::Checked<hal::Done> RunOutputs::OpenPublisher(const RigConfig& config,
-                                                  const RunOptions& options, Board& board) {
-    if (!options.publish) return hal::Done{};
+hal::Checked<hal::Done> RunOutputs::OpenNetwork(const RigConfig& config, Board& board) {
     auto network = board.OpenPublisher(config.publish);
     if (!network) return network.error();
     if (receivers_)
@@ -117,41 +172,87 @@ hal::Checked<hal::Done> RunOutputs::OpenPublisher(const RigConfig& config,
     return hal::Done{};
 }
 
-void RunOutputs::StartPublishing(const RigConfig& config, const RunOptions& options, Board& board,
-                                 const RunSummary& run, const hal::FrameFormat& format) {
+void RunOutputs::OpenTelemetry(const RigConfig& config, Board& board) {
     can_bus_ = board.can_bus();
-    if (can_bus_ != nullptr && recorder_) {
-        recorded_can_ =
-            std::make_unique<RecordedCanBus>(*can_bus_, board.is_can_live(), recorder_->intake());
+    if (can_bus_ == nullptr) return;
+    const bool live = board.is_can_live();
+    if (recorder_) {
+        recorded_can_ = std::make_unique<RecordedCanBus>(*can_bus_, live, recorder_->intake());
         can_bus_ = recorded_can_.get();
     }
-    if (can_bus_ != nullptr) {
-        const bool live = board.is_can_live();
-        telemetry_ = std::make_unique<TelemetryThread>(
-            *can_bus_, config.can->hitch_angle,
-            TelemetryOptions{.paced = !live, .clock = live ? &board.clock() : nullptr});
+    telemetry_ = std::make_unique<TelemetryThread>(
+        *can_bus_, config.can->hitch_angle,
+        TelemetryOptions{.paced = !live, .clock = live ? &board.clock() : nullptr});
+}
+
+hal::Checked<SideSources> RunOutputs::OpenSideSources(const RigConfig& config, const Parts& parts) {
+    const PublishConfig& publish = config.publish;
+    auto viewports = MakeViewports(publish, parts.rig.canvas);
+    if (!viewports) return config.file.string() + ": " + viewports.error();
+    if (publish.overlay.rate_hz > 0) {
+        overlay_ = std::make_unique<OverlayMaker>(parts.rig, parts.pipeline.map().block_px(),
+                                                  PeriodOf(publish.overlay.rate_hz));
     }
+    if (publish.preview.rate_hz > 0) {
+        PreviewOptions options{.cameras = {}, .period = PeriodOf(publish.preview.rate_hz)};
+        for (const algo::Unit unit : algo::kUnits) {
+            for (const CameraConfig& camera : config.units[unit].cameras)
+                options.cameras[unit].push_back(camera.name);
+        }
+        previews_ = std::make_unique<PreviewThread>(options);
+    }
+    return SideSources{.viewports = std::move(*viewports),
+                       .highest_quality = publish.jpeg_quality,
+                       .overlay = overlay_.get(),
+                       .previews = previews_.get()};
+}
+
+hal::Checked<hal::Done> RunOutputs::StartPublishing(const RigConfig& config,
+                                                    const RunOptions& options, const Parts& parts,
+                                                    const RunSummary& run) {
+    Board& board = parts.board;
+    clock_ = &board.clock();
+    OpenTelemetry(config, board);
+    auto side =
+        options.publish ? OpenSideSources(config, parts) : hal::Checked<SideSources>(SideSources{});
+    if (!side) return side.error();
+    const ReceiveBufferVerdict buffer = ReceiveBuffer(config.publish, options.publish);
+    if (!buffer.warning.view().empty())
+        std::fprintf(stderr, "publish: %s\n", buffer.warning.c_str());
+    const bool seams = run.cameras[algo::Unit::kTrailer] > 0;
+    watch_ = std::make_unique<RunWatch>(
+        RunWatchOptions{.health = HealthOf(config, options, board, run, recorder_.get()),
+                        .overlaps = {{seams && run.ring, seams}},
+                        .period = board.period(),
+                        .realtime = options.realtime,
+                        .receive_buffer = buffer},
+        board.events());
     publisher_ = std::make_unique<PanoramaPublisher>(
         *receivers_, board.clock(),
-        SentBeside{.telemetry = telemetry_.get(), .events = &board.events()}, format,
-        PanoramaPublisherOptions{.jpeg = {.budget_bytes = config.publish.max_bytes,
+        SentBeside{.telemetry = telemetry_.get(), .events = &board.events(), .watch = watch_.get()},
+        parts.pipeline.format(),
+        PanoramaPublisherOptions{.jpeg = {.budget_bytes = buffer.budget_bytes,
                                           .highest_quality = config.publish.jpeg_quality},
                                  .calibration_id = run.calibration_id,
                                  .drop_when_late = options.realtime,
                                  .speed = options.speed,
                                  .live_telemetry = board.is_can_live(),
-                                 .threads = options.workers.value_or(config.workers)});
+                                 .threads = options.workers.value_or(config.workers),
+                                 .side = std::move(*side)});
+    return hal::Done{};
 }
 
 void RunOutputs::Start(hal::Instant start) {
     start_ = start;
-    if (publisher_) publisher_->StartRecording(start);
     if (recorder_) recorder_->Start(start);
+    if (!publisher_) return;
+    publisher_->StartRecording(start);
+    watch_->Start(clock_->Now());
 }
 
 hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& pipeline,
                                          const RunSummary& run) {
-    if (publisher_) Publish(shown, run);
+    if (publisher_) Publish(shown, pipeline, run);
     if (panorama_ && !panorama_->Append(shown.picture)) return Refusal(*panorama_);
     for (const algo::Unit unit : algo::kUnits) {
         if (!views_[unit]) continue;
@@ -160,18 +261,30 @@ hal::Checked<hal::Done> RunOutputs::Show(const ShownPanorama& shown, Pipeline& p
     return hal::Done{};
 }
 
-void RunOutputs::Publish(const ShownPanorama& shown, const RunSummary& run) {
+void RunOutputs::Publish(const ShownPanorama& shown, const Pipeline& pipeline,
+                         const RunSummary& run) {
     if (telemetry_) telemetry_->Advance(shown.captured_until);
     hal::FrameView picture = shown.picture;
     const hal::Instant captured_from = OnThisClock(picture.header.captured_at);
+    const hal::Instant captured_until = OnThisClock(shown.captured_until);
     picture.header.captured_at = captured_from;
-    publisher_->Append({.picture = picture,
-                        .captured_until = OnThisClock(shown.captured_until),
-                        .status = Status(shown, run, captured_from)});
+    const hal::PanoramaStatus status = Status(shown, run, captured_from);
+    if (overlay_) {
+        overlay_->Offer({status.sequence, captured_from}, *shown.composition, pipeline.map(),
+                        clock_->Now());
+    }
+    watch_->Add(Figures(status, shown, captured_until, pipeline, run));
+    publisher_->Append({.picture = picture, .captured_until = captured_until, .status = status});
 }
 
 hal::Instant RunOutputs::OnThisClock(hal::Instant captured) const {
     return start_ + AtSpeed(captured, speed_);
+}
+
+void RunOutputs::DoOffer(FrameSet& set) {
+    if (!previews_) return;
+    const hal::Instant now = clock_->Now();
+    if (previews_->IsDue(now)) previews_->Give(std::move(set), start_, now);
 }
 
 void RunOutputs::AddPools(std::vector<PoolSummary>& pools) const {
@@ -199,6 +312,7 @@ std::optional<RecordingSummary> RunOutputs::recording() const {
 hal::Checked<hal::Done> RunOutputs::Finish() {
     if (recorder_) recorder_->Stop("the program ends");
     if (publisher_) publisher_->Finish();
+    if (previews_) previews_->Finish();
     if (recorder_) recorder_->Finish();
     for (VideoWriter* video : {panorama_.get(), views_[algo::Unit::kTractor].get(),
                                views_[algo::Unit::kTrailer].get()}) {

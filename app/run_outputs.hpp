@@ -16,12 +16,24 @@ namespace hitchview::app {
 class Board;
 
 /// Where the panoramas of a run go: videos, the network and a recording.
-class RunOutputs {
+class RunOutputs final : private ShownSets {
  public:
+    /// What it is opened on; all must outlive it.
+    struct Parts {
+        Board& board;
+        const RigGeometry& rig;
+        Pipeline& pipeline;
+    };
     static hal::Checked<std::unique_ptr<RunOutputs>> Open(const RigConfig& config,
-                                                          const RunOptions& options, Board& board,
-                                                          const RunSummary& run,
-                                                          const hal::FrameFormat& format);
+                                                          const RunOptions& options,
+                                                          const Parts& parts,
+                                                          const RunSummary& run);
+    /// Frame sets that it may hold beside the pipeline's.
+    static int HeldFrames(const RigConfig& config, const RunOptions& options) {
+        return options.publish && config.publish.preview.rate_hz > 0 ? 1 : 0;
+    }
+
+    ~RunOutputs() override;
 
     /// Before the first Show, and again when the recording's pace slips: CLOCK_MONOTONIC moment of
     /// its moment 0.
@@ -47,17 +59,21 @@ class RunOutputs {
                                        const hal::FrameFormat& format);
     hal::Checked<hal::Done> OpenRecording(const RigConfig& config, const RunOptions& options,
                                           Board& board, const RunSummary& run);
-    hal::Checked<hal::Done> OpenPublisher(const RigConfig& config, const RunOptions& options,
-                                          Board& board);
-    void StartPublishing(const RigConfig& config, const RunOptions& options, Board& board,
-                         const RunSummary& run, const hal::FrameFormat& format);
-    void Publish(const ShownPanorama& shown, const RunSummary& run);
+    hal::Checked<hal::Done> OpenNetwork(const RigConfig& config, Board& board);
+    hal::Checked<SideSources> OpenSideSources(const RigConfig& config, const Parts& parts);
+    void OpenTelemetry(const RigConfig& config, Board& board);
+    hal::Checked<hal::Done> StartPublishing(const RigConfig& config, const RunOptions& options,
+                                            const Parts& parts, const RunSummary& run);
+    /// Previews are made of sets that were shown.
+    void DoOffer(FrameSet& set) override;
+    void Publish(const ShownPanorama& shown, const Pipeline& pipeline, const RunSummary& run);
 
     /// Of a moment of the cameras' time.
     [[nodiscard]] hal::Instant OnThisClock(hal::Instant captured) const;
 
     hal::Instant start_{};
-    double speed_ = 1;  ///< of the cameras' time
+    double speed_ = 1;              ///< of the cameras' time
+    Pipeline* pipeline_ = nullptr;  // while it offers its sets
     std::unique_ptr<VideoWriter> panorama_;
     algo::PerUnit<std::unique_ptr<VideoWriter>> views_;
     std::unique_ptr<Recorder> recorder_;
@@ -65,6 +81,10 @@ class RunOutputs {
     std::unique_ptr<RecordedCanBus> recorded_can_;
     hal::CanBus* can_bus_ = nullptr;
     std::unique_ptr<TelemetryThread> telemetry_;
+    const hal::Clock* clock_ = nullptr;
+    std::unique_ptr<RunWatch> watch_;
+    std::unique_ptr<OverlayMaker> overlay_;
+    std::unique_ptr<PreviewThread> previews_;
     std::unique_ptr<PanoramaPublisher> publisher_;
 };
 

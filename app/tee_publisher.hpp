@@ -23,6 +23,14 @@ class TeePublisher final : public hal::Publisher {
     }
     hal::Result<hal::Done> DoPublish(const hal::HitchAngle& angle) override { return Both(angle); }
     hal::Result<hal::Done> DoPublish(const hal::Event& event) override { return Both(event); }
+    hal::Result<hal::Done> DoPublish(const hal::Health& health) override { return Both(health); }
+    hal::Result<hal::Done> DoPublish(const hal::ViewportImage& viewport) override {
+        return Both(viewport);
+    }
+    hal::Result<hal::Done> DoPublish(const hal::PreviewImage& preview) override {
+        return Both(preview);
+    }
+    hal::Result<hal::Done> DoPublish(const hal::Overlay& overlay) override { return Both(overlay); }
 
     template <typename Value>
     hal::Result<hal::Done> Both(const Value& value) {

@@ -50,10 +50,7 @@ class Window {
 class Viewer {
  public:
     Viewer(const ViewOptions& options, LcmSubscriber& subscriber, Window* window)
-        : options_(options),
-          subscriber_(subscriber),
-          window_(window),
-          display_(options.stale_after) {
+        : options_(options), subscriber_(subscriber), window_(window), display_(options.max_age) {
         if (options.frames || !options.save.empty())
             maybe_frames_left_ = options.frames.value_or(1);
     }
@@ -64,27 +61,34 @@ class Viewer {
             if (!TakePicture()) return Fail(kMachineFailed, "LCM stopped receiving");
             if (window_ != nullptr && !window_->Show(display_.Shown(Now()))) return kDone;
             if (maybe_frames_left_ && Now() - last_picture_at_ > options_.wait) {
+                if (!options_.save.empty()) Save(Now());
                 return Fail(kNoPictures, "no picture on channel " + options_.channel + " of " +
                                              options_.url + " for " +
                                              std::to_string(options_.wait.count()) + " ms");
             }
         }
-        return options_.save.empty() ? int(kDone) : Save();
+        return options_.save.empty() ? int(kDone) : Save(last_picture_at_);
     }
 
  private:
     /// False when nothing can come any more.
     bool TakePicture() {
         const auto image = subscriber_.WaitImage(kPoll);
-        if (!image) return image.error() != hal::Error::kFailed;
+        display_.SetCameraNames(subscriber_.camera_names());
+        if (!image) return NoteMissing(image.error());
         if (!display_.Update(image.value(), Now())) return true;
         last_picture_at_ = Now();
         if (maybe_frames_left_) --*maybe_frames_left_;
         return true;
     }
 
-    int Save() const {
-        if (cv::imwrite(options_.save, display_.Shown(last_picture_at_))) return kDone;
+    bool NoteMissing(hal::Error error) {
+        if (error != hal::Error::kTimeout) display_.NoteDamaged();
+        return error != hal::Error::kFailed;
+    }
+
+    int Save(hal::Instant shown_at) const {
+        if (cv::imwrite(options_.save, display_.Shown(shown_at))) return kDone;
         return Fail(kMachineFailed, "cannot write " + options_.save);
     }
 
@@ -102,9 +106,8 @@ bool IsIn(Value value, long lowest, long highest) {
 }
 
 hal::Checked<hal::Done> Check(const ViewOptions& options) {
-    if (!IsIn(options.stale_after.count(), 50, 10'000)) {
-        return "stale_after is " + std::to_string(options.stale_after.count()) +
-               " ms, must be 50 to 10000";
+    if (!IsIn(options.max_age.count(), 50, 10'000)) {
+        return "max_age is " + std::to_string(options.max_age.count()) + " ms, must be 50 to 10000";
     }
     if (!IsIn(options.frames.value_or(1), 1, 1'000'000)) {
         return "frames is " + std::to_string(*options.frames) + ", must be 1 to 1000000";
@@ -142,7 +145,12 @@ int ViewVerb(const ViewOptions& options) {
     if (const auto name = drivers::CheckLcmChannel("channel", options.channel); !name) {
         return Fail(kWrongUse, name.error());
     }
-    const auto subscriber = LcmSubscriber::Create({.url = options.url, .channel = options.channel});
+    if (const auto name = drivers::CheckLcmChannel("health_channel", options.health_channel);
+        !name) {
+        return Fail(kWrongUse, name.error());
+    }
+    const auto subscriber = LcmSubscriber::Create(
+        {.url = options.url, .channel = options.channel, .health_channel = options.health_channel});
     if (!subscriber) return Fail(kMachineFailed, subscriber.error());
     return View(options, *subscriber.value());
 }

@@ -9,9 +9,10 @@ namespace hitchview::app {
 struct ViewOptions {
     std::string url = "udpm://239.255.76.67:7667?ttl=0";
     std::string channel = "PANORAMA";
-    /// Older pictures are not shown. [50, 10000]
-    std::chrono::milliseconds stale_after{500};
-    /// Write the newest picture to this file (.png, .jpg) instead of opening a window.
+    std::string health_channel = "PANORAMA_HEALTH";  ///< tells what the cameras are called
+    /// Pictures that were captured longer ago are not shown. [50, 10000]
+    std::chrono::milliseconds max_age{500};
+    /// Write what is shown in the end to this file (.png, .jpg) instead of opening a window.
     std::string save = {};
     /// End after so many pictures. [1, 1000000]; with `save`: 1 unless given.
     std::optional<int> frames = {};

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "drivers/lcm_logged_health.hpp"
 #include "drivers/lcm_log_messages.hpp"
+#include "drivers/lcm_logged_health.hpp"
 #include "hal/frame.hpp"
 
 namespace hitchview::app {

@@ -3,8 +3,8 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "app/web_cameras.hpp"
-#include "drivers/lcm_logged_health.hpp"
 #include "drivers/lcm_log_messages.hpp"
+#include "drivers/lcm_logged_health.hpp"
 #include "drivers/lcm_logged_overlay.hpp"
 
 namespace hitchview::app {

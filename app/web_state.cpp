@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "app/web_json.hpp"
-#include "drivers/lcm_logged_health.hpp"
 #include "drivers/lcm_log_messages.hpp"
+#include "drivers/lcm_logged_health.hpp"
 #include "drivers/lcm_logged_overlay.hpp"
 
 namespace hitchview::app {

@@ -1,15 +1,19 @@
 #include "drivers/lcm_encoder.hpp"
 
-#include <array>
-#include <charconv>
 #include <limits>
 #include <span>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
+#include "drivers/lcm_health_message.hpp"
+#include "drivers/lcm_image_properties.hpp"
 #include "drivers/lcm_url.hpp"
 #include "lcmtypes/bot_core_image_t.h"
 #include "lcmtypes/hitchview_event_t.h"
+#include "lcmtypes/hitchview_health_t.h"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
+#include "lcmtypes/hitchview_overlay_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 
 namespace hitchview::drivers {
@@ -32,71 +36,39 @@ static_assert(int(Quality::kNotAvailable) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_NOT
 static_assert(int(Quality::kError) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_ERROR);
 static_assert(int(Quality::kImplausible) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_IMPLAUSIBLE);
 static_assert(int(Quality::kStale) == HITCHVIEW_HITCH_ANGLE_T_QUALITY_STALE);
-static_assert(int(hal::EventCode::kCameraLost) == HITCHVIEW_EVENT_T_CAMERA_LOST);
-static_assert(int(hal::EventCode::kCameraBack) == HITCHVIEW_EVENT_T_CAMERA_BACK);
-static_assert(int(hal::EventCode::kRecordingStarted) == HITCHVIEW_EVENT_T_RECORDING_STARTED);
-static_assert(int(hal::EventCode::kRecordingStopped) == HITCHVIEW_EVENT_T_RECORDING_STOPPED);
-static_assert(int(hal::EventCode::kRecordingFailed) == HITCHVIEW_EVENT_T_RECORDING_FAILED);
-static_assert(int(hal::EventCode::kRecordingDropped) == HITCHVIEW_EVENT_T_RECORDING_DROPPED);
+using Code = hal::EventCode;
+static_assert(int(Code::kCameraLost) == HITCHVIEW_EVENT_T_CAMERA_LOST);
+static_assert(int(Code::kCameraBack) == HITCHVIEW_EVENT_T_CAMERA_BACK);
+static_assert(int(Code::kSeamLocked) == HITCHVIEW_EVENT_T_SEAM_LOCKED);
+static_assert(int(Code::kSeamCoast) == HITCHVIEW_EVENT_T_SEAM_COAST);
+static_assert(int(Code::kSeamReacquire) == HITCHVIEW_EVENT_T_SEAM_REACQUIRE);
+static_assert(int(Code::kSeamNoOverlap) == HITCHVIEW_EVENT_T_SEAM_NO_OVERLAP);
+static_assert(int(Code::kCalibrationMismatch) == HITCHVIEW_EVENT_T_CALIBRATION_MISMATCH);
+static_assert(int(Code::kDeadlineMissed) == HITCHVIEW_EVENT_T_DEADLINE_MISSED);
+static_assert(int(Code::kDeadlineKept) == HITCHVIEW_EVENT_T_DEADLINE_KEPT);
+static_assert(int(Code::kPanoramasDropped) == HITCHVIEW_EVENT_T_PANORAMAS_DROPPED);
+static_assert(int(Code::kReceiveBufferSmall) == HITCHVIEW_EVENT_T_RECEIVE_BUFFER_SMALL);
+static_assert(int(Code::kRecordingStarted) == HITCHVIEW_EVENT_T_RECORDING_STARTED);
+static_assert(int(Code::kRecordingStopped) == HITCHVIEW_EVENT_T_RECORDING_STOPPED);
+static_assert(int(Code::kRecordingFailed) == HITCHVIEW_EVENT_T_RECORDING_FAILED);
+static_assert(int(Code::kRecordingDropped) == HITCHVIEW_EVENT_T_RECORDING_DROPPED);
 
 /// Room for everything in an image message that is not its JPEG.
 constexpr int kEnvelopeBytes = 1024;
-
-/// The properties of a panorama as printable text, in memory of its own.
-class PanoramaMetadata {
- public:
-    explicit PanoramaMetadata(const hal::PanoramaImage& image) {
-        AddNumber("sequence", image.sequence);
-        AddNumber("captured_from_ns", image.captured_from.count());
-        AddNumber("captured_until_ns", image.captured_until.count());
-        AddMask("cameras_missing", image.cameras_missing);
-        Add("calibration_id", image.calibration_id);
-    }
-
-    PanoramaMetadata(const PanoramaMetadata&) = delete;
-    PanoramaMetadata& operator=(const PanoramaMetadata&) = delete;
-
-    [[nodiscard]] std::span<bot_core_image_metadata_t> entries() { return entries_; }
-
- private:
-    using Text = std::array<char, 24>;
-
-    void AddNumber(const char* key, std::int64_t value) {
-        Text& text = texts_.at(count_);
-        const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-        Add(key, {text.data(), static_cast<std::size_t>(end - text.data())});
-    }
-
-    void AddMask(const char* key, std::uint32_t mask) {
-        constexpr std::string_view kDigits = "0123456789abcdef";
-        Text& text = texts_.at(count_);
-        text = {'0', 'x'};
-        for (int i = 0; i < 8; ++i) text.at(2 + i) = kDigits[mask >> (28 - 4 * i) & 0xF];
-        Add(key, {text.data(), 10});
-    }
-
-    // The generated type has no const members; encoding only reads them.
-    void Add(const char* key, std::string_view value) {
-        const auto* bytes = reinterpret_cast<const std::uint8_t*>(value.data());
-        entries_.at(count_++) = {.key = const_cast<char*>(key),
-                                 .n = static_cast<std::int32_t>(value.size()),
-                                 .value = const_cast<std::uint8_t*>(bytes)};
-    }
-
-    std::array<bot_core_image_metadata_t, 5> entries_{};
-    std::array<Text, 5> texts_{};
-    std::size_t count_ = 0;
-};
+/// Of what is no image: an overlay of a canvas of 4096 rows.
+constexpr int kLargestOtherBytes = 32768;
 
 Checked<Done> Check(const LcmEncoderOptions& options) {
-    if (auto name = CheckLcmChannel("panorama_channel", options.panorama_channel); !name) {
-        return name;
+    const std::pair<const char*, const std::string&> channels[] = {
+        {"panorama_channel", options.panorama_channel},
+        {"status_channel", options.status_channel},
+        {"hitch_angle_channel", options.hitch_angle_channel},
+        {"event_channel", options.event_channel},
+        {"health_channel", options.health_channel},
+        {"overlay_channel", options.overlay_channel}};
+    for (const auto& [key, channel] : channels) {
+        if (auto name = CheckLcmChannel(key, channel); !name) return name;
     }
-    if (auto name = CheckLcmChannel("status_channel", options.status_channel); !name) return name;
-    if (auto name = CheckLcmChannel("hitch_angle_channel", options.hitch_angle_channel); !name) {
-        return name;
-    }
-    if (auto name = CheckLcmChannel("event_channel", options.event_channel); !name) return name;
     const int bytes = options.max_image_bytes;
     if (bytes >= kSmallestImageBytes && bytes <= kLargestImageBytes) return Done{};
     return "max_image_bytes is " + std::to_string(bytes) + ", must be " +
@@ -114,22 +86,45 @@ Checked<std::unique_ptr<LcmEncoder>> LcmEncoder::Create(const LcmEncoderOptions&
 LcmEncoder::LcmEncoder(const LcmEncoderOptions& options, const hal::Clock& clock)
     : options_(options),
       clock_(clock),
-      buffer_(static_cast<std::size_t>(options.max_image_bytes) + kEnvelopeBytes) {}
+      buffer_(static_cast<std::size_t>(options.max_image_bytes) + kEnvelopeBytes),
+      other_buffer_(kLargestOtherBytes) {}
 
 template <typename Message>
-Result<LcmMessage> LcmEncoder::Write(const std::string& channel, const Message& message,
+Result<LcmMessage> LcmEncoder::Write(const char* channel, const Message& message,
                                      int (*encode)(void*, int, int, const Message*)) {
-    const int bytes = encode(buffer_.data(), 0, static_cast<int>(buffer_.size()), &message);
+    constexpr bool kIsImage = std::is_same_v<Message, bot_core_image_t>;
+    std::vector<std::uint8_t>& buffer = kIsImage ? buffer_ : other_buffer_;
+    const int bytes = encode(buffer.data(), 0, static_cast<int>(buffer.size()), &message);
     if (bytes < 0) return Error::kTooLarge;
-    return LcmMessage{.channel = channel.c_str(),
+    return LcmMessage{.channel = channel,
                       .utime_us = message.utime,
-                      .bytes = {buffer_.data(), static_cast<std::size_t>(bytes)}};
+                      .bytes = {buffer.data(), static_cast<std::size_t>(bytes)}};
 }
 
 Result<LcmMessage> LcmEncoder::Encode(const hal::PanoramaImage& image) {
+    LcmImageProperties properties(image);
+    return EncodeImage(options_.panorama_channel.c_str(), image, properties);
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::ViewportImage& viewport) {
+    LcmImageProperties properties(viewport.image);
+    return EncodeImage(viewport.channel, viewport.image, properties);
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::PreviewImage& preview) {
+    LcmImageProperties properties(preview);
+    return EncodeImage(preview.channel,
+                       {.captured_from = preview.captured_at,
+                        .width_px = preview.width_px,
+                        .height_px = preview.height_px,
+                        .jpeg = preview.jpeg},
+                       properties);
+}
+
+Result<LcmMessage> LcmEncoder::EncodeImage(const char* channel, const hal::PanoramaImage& image,
+                                           LcmImageProperties& properties) {
     const auto limit = static_cast<std::size_t>(options_.max_image_bytes);
     if (image.jpeg.size() > limit) return Error::kTooLarge;
-    PanoramaMetadata metadata(image);
     const bot_core_image_t message{
         .utime = clock_.EpochMicroseconds(image.captured_from),
         .width = image.width_px,
@@ -138,10 +133,10 @@ Result<LcmMessage> LcmEncoder::Encode(const hal::PanoramaImage& image) {
         .pixelformat = BOT_CORE_IMAGE_T_PIXEL_FORMAT_MJPEG,
         .size = static_cast<std::int32_t>(image.jpeg.size()),
         .data = const_cast<std::uint8_t*>(image.jpeg.data()),
-        .nmetadata = static_cast<std::int32_t>(metadata.entries().size()),
-        .metadata = metadata.entries().data(),
+        .nmetadata = static_cast<std::int32_t>(properties.entries().size()),
+        .metadata = properties.entries().data(),
     };
-    return Write(options_.panorama_channel, message, bot_core_image_t_encode);
+    return Write(channel, message, bot_core_image_t_encode);
 }
 
 Result<LcmMessage> LcmEncoder::Encode(const hal::PanoramaStatus& status) {
@@ -163,7 +158,7 @@ Result<LcmMessage> LcmEncoder::Encode(const hal::PanoramaStatus& status) {
     };
     message.seam_state[0] = static_cast<std::int8_t>(status.seams[0]);
     message.seam_state[1] = static_cast<std::int8_t>(status.seams[1]);
-    return Write(options_.status_channel, message, hitchview_panorama_status_t_encode);
+    return Write(options_.status_channel.c_str(), message, hitchview_panorama_status_t_encode);
 }
 
 Result<LcmMessage> LcmEncoder::Encode(const hal::HitchAngle& angle) {
@@ -178,7 +173,7 @@ Result<LcmMessage> LcmEncoder::Encode(const hal::HitchAngle& angle) {
         .quality = static_cast<std::int8_t>(angle.quality),
         .angle_rad = valid ? angle.angle_rad : kNotANumber,
     };
-    return Write(options_.hitch_angle_channel, message, hitchview_hitch_angle_t_encode);
+    return Write(options_.hitch_angle_channel.c_str(), message, hitchview_hitch_angle_t_encode);
 }
 
 Result<LcmMessage> LcmEncoder::Encode(const hal::Event& event) {
@@ -191,7 +186,37 @@ Result<LcmMessage> LcmEncoder::Encode(const hal::Event& event) {
         .subject = const_cast<char*>(event.subject.c_str()),
         .text = const_cast<char*>(event.text.c_str()),
     };
-    return Write(options_.event_channel, message, hitchview_event_t_encode);
+    return Write(options_.event_channel.c_str(), message, hitchview_event_t_encode);
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::Health& health) {
+    const LcmHealthMessage message(health, health_sequence_++,
+                                   clock_.EpochMicroseconds(health.measured_at));
+    return Write(options_.health_channel.c_str(), message.get(), hitchview_health_t_encode);
+}
+
+Result<LcmMessage> LcmEncoder::Encode(const hal::Overlay& overlay) {
+    // The generated type has no const members; encoding only reads them.
+    const auto borrow = [](std::span<const float> values) {
+        return const_cast<float*>(values.data());
+    };
+    const hitchview_overlay_t message{
+        .sequence = static_cast<std::int32_t>(overlay.sequence),
+        .utime = clock_.EpochMicroseconds(overlay.captured_from),
+        .capture_ns = overlay.captured_from.count(),
+        .width = overlay.width_px,
+        .height = overlay.height_px,
+        .mesh_rows = overlay.mesh_rows,
+        .mesh_cols = overlay.mesh_cols,
+        .nvertices = static_cast<std::int32_t>(overlay.mesh_x.size()),
+        .mesh_x = borrow(overlay.mesh_x),
+        .mesh_y = borrow(overlay.mesh_y),
+        .seam_rows = static_cast<std::int32_t>(overlay.seam_y.size()),
+        .seam_y = borrow(overlay.seam_y),
+        .left_seam_x = borrow(overlay.left_seam_x),
+        .right_seam_x = borrow(overlay.right_seam_x),
+    };
+    return Write(options_.overlay_channel.c_str(), message, hitchview_overlay_t_encode);
 }
 
 }  // namespace hitchview::drivers

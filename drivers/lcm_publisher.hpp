@@ -18,7 +18,7 @@ struct LcmPublisherOptions {
     LcmEncoderOptions messages{};
 };
 
-/// Sends what an LcmEncoder makes of panoramas, status, hitch angles and events over LCM.
+/// Sends what an LcmEncoder makes of all that a publisher carries over LCM.
 /// Publishing takes no memory.
 class LcmPublisher final : public hal::Publisher {
  public:
@@ -41,6 +41,18 @@ class LcmPublisher final : public hal::Publisher {
     }
     hal::Result<hal::Done> DoPublish(const hal::Event& event) override {
         return Send(encoder_->Encode(event));
+    }
+    hal::Result<hal::Done> DoPublish(const hal::Health& health) override {
+        return Send(encoder_->Encode(health));
+    }
+    hal::Result<hal::Done> DoPublish(const hal::ViewportImage& viewport) override {
+        return Send(encoder_->Encode(viewport));
+    }
+    hal::Result<hal::Done> DoPublish(const hal::PreviewImage& preview) override {
+        return Send(encoder_->Encode(preview));
+    }
+    hal::Result<hal::Done> DoPublish(const hal::Overlay& overlay) override {
+        return Send(encoder_->Encode(overlay));
     }
     hal::Result<hal::Done> Send(const hal::Result<LcmMessage>& message);
 

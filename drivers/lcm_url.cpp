@@ -94,6 +94,10 @@ Checked<Done> CheckLcmUrl(std::string_view url) {
     return result ? result : "LCM URL " + Quoted(url) + ": " + result.error();
 }
 
+bool IsMulticastUrl(std::string_view url) {
+    return IsMulticast(url.substr(0, url.find(':')));
+}
+
 Checked<Done> CheckLcmChannel(std::string_view key, std::string_view channel) {
     constexpr std::size_t kLongest = 63;
     const auto allowed = [](char c) {
@@ -107,8 +111,7 @@ Checked<Done> CheckLcmChannel(std::string_view key, std::string_view channel) {
 }
 
 std::string WithReceiveBuffer(const std::string& url, int bytes) {
-    const std::string_view scheme = std::string_view(url).substr(0, url.find(':'));
-    if (!IsMulticast(scheme) || url.find(kReceiveBufferKey) != std::string::npos) return url;
+    if (!IsMulticastUrl(url) || url.find(kReceiveBufferKey) != std::string::npos) return url;
     const char separator = url.find('?') == std::string::npos ? '?' : '&';
     return url + separator + std::string(kReceiveBufferKey) + '=' + std::to_string(bytes);
 }

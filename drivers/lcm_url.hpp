@@ -16,6 +16,9 @@ inline constexpr const char* kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0";
 /// false). Schemes file, memq and tcpq are left to LCM.
 hal::Checked<hal::Done> CheckLcmUrl(std::string_view url);
 
+/// Whether messages are sent to a network rather than written to a file or handed on.
+bool IsMulticastUrl(std::string_view url);
+
 /// An LCM channel: 1 to 63 characters of A-Z, a-z, 0-9 and '_', so that it is its own pattern.
 hal::Checked<hal::Done> CheckLcmChannel(std::string_view key, std::string_view channel);
 

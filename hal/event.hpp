@@ -13,15 +13,28 @@ namespace hitchview::hal {
 enum class EventCode : std::int16_t {
     kCameraLost = 1,
     kCameraBack = 2,
+    kSeamLocked = 20,
+    kSeamCoast = 21,
+    kSeamReacquire = 22,
+    kSeamNoOverlap = 23,
+    kCalibrationMismatch = 40,
+    kDeadlineMissed = 60,
+    kDeadlineKept = 61,
+    kPanoramasDropped = 62,
+    kReceiveBufferSmall = 63,
     kRecordingStarted = 80,
     kRecordingStopped = 81,
     kRecordingFailed = 82,
     kRecordingDropped = 83,
 };
 
-inline constexpr std::array kEventCodes{EventCode::kCameraLost,       EventCode::kCameraBack,
-                                        EventCode::kRecordingStarted, EventCode::kRecordingStopped,
-                                        EventCode::kRecordingFailed,  EventCode::kRecordingDropped};
+/// In the order of their numbers.
+inline constexpr std::array kEventCodes{
+    EventCode::kCameraLost,          EventCode::kCameraBack,         EventCode::kSeamLocked,
+    EventCode::kSeamCoast,           EventCode::kSeamReacquire,      EventCode::kSeamNoOverlap,
+    EventCode::kCalibrationMismatch, EventCode::kDeadlineMissed,     EventCode::kDeadlineKept,
+    EventCode::kPanoramasDropped,    EventCode::kReceiveBufferSmall, EventCode::kRecordingStarted,
+    EventCode::kRecordingStopped,    EventCode::kRecordingFailed,    EventCode::kRecordingDropped};
 
 constexpr const char* ToString(EventCode code) {
     switch (code) {
@@ -29,6 +42,24 @@ constexpr const char* ToString(EventCode code) {
             return "camera_lost";
         case EventCode::kCameraBack:
             return "camera_back";
+        case EventCode::kSeamLocked:
+            return "seam_locked";
+        case EventCode::kSeamCoast:
+            return "seam_coast";
+        case EventCode::kSeamReacquire:
+            return "seam_reacquire";
+        case EventCode::kSeamNoOverlap:
+            return "seam_no_overlap";
+        case EventCode::kCalibrationMismatch:
+            return "calibration_mismatch";
+        case EventCode::kDeadlineMissed:
+            return "deadline_missed";
+        case EventCode::kDeadlineKept:
+            return "deadline_kept";
+        case EventCode::kPanoramasDropped:
+            return "panoramas_dropped";
+        case EventCode::kReceiveBufferSmall:
+            return "receive_buffer_small";
         case EventCode::kRecordingStarted:
             return "recording_started";
         case EventCode::kRecordingStopped:
@@ -42,13 +73,14 @@ constexpr const char* ToString(EventCode code) {
 }
 
 /// What and why, for a person.
-using EventText = FixedText<96>;
+using EventText = FixedText<192>;
 
 /// Something that a person should know of, at the moment it happened.
 struct Event {
     EventCode code = EventCode::kCameraLost;
     Instant when{};
-    FixedText<64> subject{};  ///< whom it befell: a camera's name, a recording's file
+    /// Whom it befell: the name of a camera, left or right of a seam, a recording's file.
+    FixedText<64> subject{};
     EventText text{};
 };
 

@@ -21,6 +21,7 @@ class FakePublisher final : public Publisher {
     std::vector<PanoramaStatus> statuses;
     std::vector<HitchAngle> angles;
     std::vector<Event> events;
+    std::vector<Health> healths;
     std::optional<Error> refusal;  ///< while set, every Publish answers this and keeps nothing
 
  private:
@@ -34,6 +35,7 @@ class FakePublisher final : public Publisher {
     Result<Done> DoPublish(const PanoramaStatus& status) override { return Keep(statuses, status); }
     Result<Done> DoPublish(const HitchAngle& angle) override { return Keep(angles, angle); }
     Result<Done> DoPublish(const Event& event) override { return Keep(events, event); }
+    Result<Done> DoPublish(const Health& health) override { return Keep(healths, health); }
 
     template <typename T>
     Result<Done> Keep(std::vector<T>& kept, const T& message) {

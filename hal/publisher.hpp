@@ -8,7 +8,9 @@
 
 #include "hal/event.hpp"
 #include "hal/frame.hpp"
+#include "hal/health.hpp"
 #include "hal/hitch_angle.hpp"
+#include "hal/overlay.hpp"
 #include "hal/result.hpp"
 
 namespace hitchview::hal {
@@ -39,6 +41,22 @@ struct PanoramaImage {
     int height_px = 0;
     std::uint32_t cameras_missing = 0;  ///< bit i: camera i of the rig shows no data
     std::string_view calibration_id{};  ///< empty for a rig without calibration
+    std::span<const std::uint8_t> jpeg{};
+};
+
+/// A named part of a panorama, on a channel of its own; borrowed for the call.
+struct ViewportImage {
+    const char* channel = "";
+    PanoramaImage image;  ///< size and JPEG are the part's, all else is the panorama's
+};
+
+/// One camera's frame, reduced and compressed, on a channel of its own; borrowed for the call.
+struct PreviewImage {
+    const char* channel = "";
+    std::uint32_t sequence = 0;  ///< frame set that it is of
+    Instant captured_at{};       ///< start of its exposure
+    int width_px = 0;
+    int height_px = 0;
     std::span<const std::uint8_t> jpeg{};
 };
 
@@ -73,12 +91,21 @@ class Publisher {
     Result<Done> Publish(const PanoramaStatus& status) { return DoPublish(status); }
     Result<Done> Publish(const HitchAngle& angle) { return DoPublish(angle); }
     Result<Done> Publish(const Event& event) { return DoPublish(event); }
+    Result<Done> Publish(const Health& health) { return DoPublish(health); }
+    Result<Done> Publish(const ViewportImage& viewport) { return DoPublish(viewport); }
+    Result<Done> Publish(const PreviewImage& preview) { return DoPublish(preview); }
+    Result<Done> Publish(const Overlay& overlay) { return DoPublish(overlay); }
 
  private:
     virtual Result<Done> DoPublish(const PanoramaImage& image) = 0;
     virtual Result<Done> DoPublish(const PanoramaStatus& status) = 0;
     virtual Result<Done> DoPublish(const HitchAngle& angle) = 0;
     virtual Result<Done> DoPublish(const Event& event) = 0;
+    // What not every receiver wants: a publisher that does not carry it is done at once.
+    virtual Result<Done> DoPublish(const Health& /*health*/) { return Done{}; }
+    virtual Result<Done> DoPublish(const ViewportImage& /*viewport*/) { return Done{}; }
+    virtual Result<Done> DoPublish(const PreviewImage& /*preview*/) { return Done{}; }
+    virtual Result<Done> DoPublish(const Overlay& /*overlay*/) { return Done{}; }
 };
 
 }  // namespace hitchview::hal

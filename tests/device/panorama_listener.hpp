@@ -33,8 +33,8 @@ struct HeardEvent {
     std::string text;
 };
 
-/// Hears the statuses and events of a program on this machine, on a thread of its own. Multicast
-/// goes over the loopback interface from then on.
+/// Hears the statuses and the cameras' events of a program on this machine, on a thread of its own.
+/// Multicast goes over the loopback interface from then on.
 class PanoramaListener {
  public:
     PanoramaListener() : lcm_(Connect()) {
@@ -87,8 +87,11 @@ class PanoramaListener {
         hitchview_event_t event{};
         if (hitchview_event_t_decode(data, 0, bytes, &event) < 0) return;
         const std::lock_guard lock(mutex_);
-        events_.push_back(
-            {Now(), hal::Instant(event.monotonic_ns), event.code, event.subject, event.text});
+        constexpr int kLastCameraCode = 19;
+        if (event.code <= kLastCameraCode) {
+            events_.push_back(
+                {Now(), hal::Instant(event.monotonic_ns), event.code, event.subject, event.text});
+        }
         hitchview_event_t_decode_cleanup(&event);
     }
 

@@ -97,7 +97,7 @@ class Receiver {
 /// The kernel's usual receive buffer is too small for images.
 std::string WithReceiveBuffer(const std::string& url) {
     const char* const separator = url.find('?') == std::string::npos ? "?" : "&";
-    return url + separator + "recv_buf_size=8388608";
+    return url + separator + "recv_buf_size=16777216";
 }
 
 void ReceiveUntil(lcm::LCM& lcm, const Receiver& receiver, long expected, Clock::time_point end) {

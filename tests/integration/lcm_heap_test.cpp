@@ -24,7 +24,10 @@ TEST(LcmHeapTest, PublishingTakesNoMemory) {
         all_sent = publisher.value()->Publish(image).ok() &&
                    publisher.value()->Publish(hal::PanoramaStatus{}).ok() &&
                    publisher.value()->Publish(hal::HitchAngle{}).ok() &&
-                   publisher.value()->Publish(hal::Event{}).ok() && all_sent;
+                   publisher.value()->Publish(hal::Event{}).ok() &&
+                   publisher.value()->Publish(hal::Health{}).ok() &&
+                   publisher.value()->Publish(hal::Overlay{}).ok() &&
+                   publisher.value()->Publish(hal::PreviewImage{"PREVIEW_A"}).ok() && all_sent;
     }
     EXPECT_EQ(HeapCallsOfThisThread(), before);
     EXPECT_TRUE(all_sent);

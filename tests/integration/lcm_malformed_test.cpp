@@ -4,6 +4,7 @@
 
 #include "drivers/lcm_handle.hpp"
 #include "drivers/lcm_subscriber.hpp"
+#include "tests/support/health_message.hpp"
 #include "tests/support/image_message.hpp"
 
 // Runs in a network namespace of its own (tests/support/lcm_namespace.sh).
@@ -104,6 +105,28 @@ TEST_F(LcmMalformedTest, RandomBytesAreRefused) {
         for (auto& byte : message) byte = static_cast<std::uint8_t>(random());
         ExpectRefused(message);
     }
+    ExpectStillWorking();
+}
+
+TEST_F(LcmMalformedTest, HealthThatIsDamagedIsRefusedAndTheLastNamesStay) {
+    const auto send = [this](const Bytes& message) {
+        EXPECT_EQ(lcm_publish(sender_.get(), "PANORAMA_HEALTH", message.data(),
+                              static_cast<unsigned>(message.size())),
+                  0);
+        const auto none = subscriber_->WaitImage(milliseconds(5000));
+        EXPECT_EQ(none.error(), hal::Error::kTimeout);
+    };
+    send(tests::HealthMessage({"front", "rear"}));
+    EXPECT_EQ(subscriber_->camera_names(), (std::vector<std::string>{"front", "rear"}));
+    std::mt19937 random(6);
+    const std::uint64_t before = subscriber_->refused();
+    for (int i = 0; i < 100; ++i) {
+        Bytes message = tests::HealthMessage({"front", "rear"});
+        message.resize(random() % message.size());
+        send(message);
+    }
+    EXPECT_EQ(subscriber_->refused(), before + 100);
+    EXPECT_EQ(subscriber_->camera_names(), (std::vector<std::string>{"front", "rear"}));
     ExpectStillWorking();
 }
 

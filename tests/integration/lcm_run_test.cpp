@@ -6,12 +6,16 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "app/program.hpp"
 #include "drivers/lcm_url.hpp"
 #include "drivers/simulated_motion.hpp"
+#include "lcmtypes/hitchview_event_t.h"
+#include "lcmtypes/hitchview_health_t.h"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
+#include "lcmtypes/hitchview_overlay_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 #include "tests/support/small_drive.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -111,6 +115,8 @@ class LcmRunTest : public testing::Test {
 
     /// `hitchview run` on the recorded drive with the usual canvas, logged to `log.lcm`.
     void Run(const std::string& more) {
+        if (ran_with_ == more) return;  // the test before looked at the same run
+        ran_with_ = more;
         const std::string rig = tests::SmallDriveRig(*folder_, "{projection: cylinder}", more);
         std::filesystem::remove(*folder_ / "log.lcm");
         Receiver receiver(kFrames);
@@ -137,9 +143,10 @@ class LcmRunTest : public testing::Test {
     }
 
     static std::unique_ptr<TemporaryFolder> folder_;
-    Receiver::Counts counts_;
-    nlohmann::json report_;
-    std::map<std::string, std::vector<std::vector<std::uint8_t>>> log_;
+    static std::optional<std::string> ran_with_;
+    static Receiver::Counts counts_;
+    static nlohmann::json report_;
+    static std::map<std::string, std::vector<std::vector<std::uint8_t>>> log_;
 
  private:
     /// lcm-logger makes its file before it subscribes, at once.
@@ -152,6 +159,10 @@ class LcmRunTest : public testing::Test {
 };
 
 std::unique_ptr<TemporaryFolder> LcmRunTest::folder_;
+std::optional<std::string> LcmRunTest::ran_with_;
+Receiver::Counts LcmRunTest::counts_;
+nlohmann::json LcmRunTest::report_;
+std::map<std::string, std::vector<std::vector<std::uint8_t>>> LcmRunTest::log_;
 
 TEST_F(LcmRunTest, EveryPanoramaAndTheHitchAngleArriveAtOtherPrograms) {
     Run(std::string("can:\n  source: {simulated: true}\n") + tests::kSimulatedHitchAngle);
@@ -179,12 +190,85 @@ TEST_F(LcmRunTest, EveryPanoramaAndTheHitchAngleArriveAtOtherPrograms) {
     }
 }
 
+TEST_F(LcmRunTest, PreviewsOfAllCamerasAndOverlaysAreSentBesides) {
+    Run("");
+    int cameras = 0;
+    for (const auto& [channel, messages] : log_) {
+        if (!channel.starts_with("PREVIEW_")) continue;
+        ++cameras;
+        EXPECT_GE(messages.size(), 2U) << channel;
+        EXPECT_LE(messages.size(), 8U) << channel;
+    }
+    EXPECT_EQ(cameras, 8);
+    const auto& overlays = log_["PANORAMA_OVERLAY"];
+    ASSERT_GE(overlays.size(), 3U);
+    EXPECT_LE(overlays.size(), 17U);
+    hitchview_overlay_t overlay{};
+    ASSERT_GT(hitchview_overlay_t_decode(overlays.back().data(), 0,
+                                         static_cast<int>(overlays.back().size()), &overlay),
+              0);
+    EXPECT_EQ(overlay.width, 2048);
+    EXPECT_EQ(overlay.nvertices, 2 * overlay.mesh_rows * overlay.mesh_cols);
+    EXPECT_GT(overlay.seam_rows, 10);
+    hitchview_overlay_t_decode_cleanup(&overlay);
+}
+
 TEST_F(LcmRunTest, WithoutACanBusNoHitchAngleIsSent) {
     Run("");
     ExpectEveryPanoramaArrived();
     EXPECT_GT(log_["PANORAMA_STATUS"].size(), 0U);
     EXPECT_EQ(log_["HITCH_ANGLE"].size(), 0U);
-    EXPECT_EQ(log_["PANORAMA_EVENT"].size(), 0U);
+}
+
+TEST_F(LcmRunTest, HealthComesOnceASecondFromTheStart) {
+    Run("");
+    const auto& messages = log_["PANORAMA_HEALTH"];
+    ASSERT_GE(messages.size(), 3U);  // at 0, 1 and 2 of three seconds
+    EXPECT_LE(messages.size(), 5U);
+    std::int32_t sequence = 0;
+    for (const auto& bytes : messages) {
+        hitchview_health_t health{};
+        ASSERT_GT(
+            hitchview_health_t_decode(bytes.data(), 0, static_cast<int>(bytes.size()), &health), 0);
+        EXPECT_EQ(health.sequence, sequence++);
+        EXPECT_STREQ(health.version, HITCHVIEW_VERSION);
+        EXPECT_STRNE(health.calibration_id, "");
+        EXPECT_STREQ(health.warning, "");
+        EXPECT_EQ(health.image_budget_bytes, 150'000);
+        EXPECT_GT(health.rss_bytes, 10'000'000);
+        EXPECT_LE(health.heap_calls, 0);
+        ASSERT_EQ(health.ncameras, 8);
+        EXPECT_STREQ(health.cameras[0].unit, "tractor");
+        EXPECT_STREQ(health.cameras[7].unit, "trailer");
+        ASSERT_EQ(health.nstages, 9);
+        EXPECT_STREQ(health.stages[8].name, "latency");
+        if (health.sequence > 0) {
+            EXPECT_GT(health.panoramas, 0);
+            EXPECT_GT(health.panoramas_per_s, 0);
+            EXPECT_GT(health.image_bytes, 1000);
+            EXPECT_GT(health.cameras[3].frames_per_s, 0);
+            EXPECT_GT(health.stages[5].p50_ms, 0);
+        }
+        hitchview_health_t_decode_cleanup(&health);
+    }
+}
+
+TEST_F(LcmRunTest, EventsAreCountedInTheReportAndAllAreSent) {
+    Run("");
+    std::map<std::int16_t, int> codes;
+    for (const auto& bytes : log_["PANORAMA_EVENT"]) {
+        hitchview_event_t event{};
+        ASSERT_GT(hitchview_event_t_decode(bytes.data(), 0, static_cast<int>(bytes.size()), &event),
+                  0);
+        ++codes[event.code];
+        hitchview_event_t_decode_cleanup(&event);
+    }
+    const nlohmann::json& events = report_.at("events");
+    EXPECT_EQ(codes[HITCHVIEW_EVENT_T_SEAM_LOCKED], events.at("seam_locked"));
+    EXPECT_EQ(codes[HITCHVIEW_EVENT_T_SEAM_COAST], events.at("seam_coast"));
+    EXPECT_EQ(codes[HITCHVIEW_EVENT_T_DEADLINE_MISSED], events.at("deadline_missed"));
+    EXPECT_EQ(codes[HITCHVIEW_EVENT_T_PANORAMAS_DROPPED], events.at("panoramas_dropped"));
+    EXPECT_EQ(events.at("refused"), 0);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <thread>
 
+#include "app/display.hpp"
 #include "app/jpeg_encoder.hpp"
 #include "app/jpeg_picture.hpp"
 #include "app/view_verb.hpp"
@@ -22,10 +23,12 @@ using tests::I420Picture;
 /// Publishes one picture thirty times a second until destroyed.
 class Source {
  public:
-    explicit Source(hal::PanoramaImage image)
-        : image_(image),
-          publisher_(std::move(drivers::LcmPublisher::Create({}, clock_).value())),
-          thread_([this] { Run(); }) {}
+    explicit Source(hal::PanoramaImage image, const std::vector<std::string>& cameras = {})
+        : image_(image), publisher_(std::move(drivers::LcmPublisher::Create({}, clock_).value())) {
+        for (const std::string& name : cameras)
+            health_.cameras.Add({.name = std::string_view(name)});
+        thread_ = std::thread([this] { Run(); });
+    }
     ~Source() {
         stop_ = true;
         thread_.join();
@@ -36,6 +39,8 @@ class Source {
  private:
     void Run() {
         for (; !stop_; ++image_.sequence) {
+            image_.captured_until = clock_.Now();
+            EXPECT_TRUE(publisher_->Publish(health_));
             EXPECT_TRUE(publisher_->Publish(image_));
             std::this_thread::sleep_for(milliseconds(33));
         }
@@ -43,6 +48,7 @@ class Source {
 
     drivers::SteadyClock clock_;
     hal::PanoramaImage image_;
+    hal::Health health_;
     std::unique_ptr<drivers::LcmPublisher> publisher_;
     std::atomic<bool> stop_{false};
     std::thread thread_;
@@ -65,13 +71,39 @@ TEST(LcmViewTest, TheNewestPictureIsSavedAsItWasSent) {
     EXPECT_EQ(cv::norm(saved, expected, cv::NORM_INF), 0);
 }
 
-TEST(LcmViewTest, WithoutAPictureTheVerbGivesUp) {
-    EXPECT_EQ(ViewVerb({.save = testing::TempDir() + "none.png", .wait = milliseconds(200)}), 1);
+TEST(LcmViewTest, WithoutAPictureTheVerbGivesUpAndSavesWhatItShowed) {
+    const std::string path = testing::TempDir() + "none.png";
+    EXPECT_EQ(ViewVerb({.save = path, .wait = milliseconds(200)}), 1);
+    const cv::Mat saved = cv::imread(path);
+    std::remove(path.c_str());
+    ASSERT_EQ(saved.size(), cv::Size(2048, 360));
+    EXPECT_EQ(cv::norm(saved, Display(milliseconds(500)).Shown({}), cv::NORM_INF), 0);
+}
+
+TEST(LcmViewTest, CamerasThatGiveNoPictureAreCalledByTheirNames) {
+    const std::string path = testing::TempDir() + "degraded.png";
+    const auto picture = I420Picture::Waves(2048, 360, 11);
+    JpegEncoder encoder(picture.format(), {});
+    const auto jpeg = encoder.Encode(picture.view()).value();
+    const Source source({.width_px = 2048, .height_px = 360, .cameras_missing = 2, .jpeg = jpeg},
+                        {"front", "rear"});
+    // Health is sent with each picture, so it is known by the third.
+    EXPECT_EQ(ViewVerb({.save = path, .frames = 4}), 0);
+
+    Display display(milliseconds(500));
+    display.SetCameraNames({"front", "rear"});
+    ASSERT_TRUE(display.Update(
+        {.width_px = 2048, .height_px = 360, .cameras_missing = 2, .jpeg = jpeg}, {}));
+    EXPECT_EQ(display.MissingCameras(), "rear");
+    const cv::Mat saved = cv::imread(path);
+    std::remove(path.c_str());
+    ASSERT_FALSE(saved.empty());
+    EXPECT_EQ(cv::norm(saved, display.Shown({}), cv::NORM_INF), 0);
 }
 
 TEST(LcmViewTest, WrongOptionsAreWrongUse) {
     EXPECT_EQ(ViewVerb({.save = "picture.unknown"}), 2);
-    EXPECT_EQ(ViewVerb({.stale_after = milliseconds(1)}), 2);
+    EXPECT_EQ(ViewVerb({.max_age = milliseconds(1)}), 2);
     EXPECT_EQ(ViewVerb({.save = "a.png", .frames = 0}), 2);
     EXPECT_EQ(ViewVerb({.url = "udpm://1.2.3.4:5"}), 2);
     EXPECT_EQ(ViewVerb({.channel = ".*"}), 2);

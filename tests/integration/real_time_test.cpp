@@ -68,7 +68,9 @@ class OneCpu {
 };
 
 TEST_F(RealTimeRunTest, NoThreadButThoseOfFilesTakesMemoryAfterReady) {
-    const json report = Report({"replay", "--publish", "--write-video", "--trap-alloc"});
+    const json report = Report({"replay", "--publish", "--write-video", "--trap-alloc"},
+                               "publish:\n  viewports: [{name: rearward_mirror, azimuth_deg: [-150, 150]}]\n"
+                               "  preview: {rate_hz: 5}\n");
     EXPECT_EQ(report.at("frames"), kFrames);
     EXPECT_EQ(report.at("heap_calls_after_ready"), 0);
     EXPECT_TRUE(report.at("heap_calls_by_thread").empty());

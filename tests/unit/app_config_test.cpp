@@ -330,6 +330,27 @@ INSTANTIATE_TEST_SUITE_P(
                 "rig.yaml:6: publish.url is \"\", must be text"},
         BadFile{kSimulated + "publish: {status_channel: PANORAMA}\n",
                 "rig.yaml:6: publish.status_channel is PANORAMA, must be a channel of its own"},
+        BadFile{kSimulated + "publish: {viewports: [{name: rear, azimuth_deg: [1, 400]}]}\n",
+                "rig.yaml:6: publish.viewports[0].azimuth_deg[1] is 400, must be -360 to 360"},
+        BadFile{kSimulated + "publish: {viewports: [{name: rear}]}\n",
+                "rig.yaml:6: publish.viewports[0].azimuth_deg is missing, must be a list of 2"},
+        BadFile{kSimulated + "publish: {viewports: [{name: a b, azimuth_deg: [1, 0]}]}\n",
+                "rig.yaml:6: publish.viewports[0].name is a b, must be letters, digits and _, at "
+                "most 58"},
+        BadFile{kSimulated + "publish: {viewports: [{name: x, azimuth_deg: [1, 0]}, {name: X, "
+                             "azimuth_deg: [1, 0]}]}\n",
+                "rig.yaml:6: publish.viewports[1].name is X, must be a name of its own"},
+        BadFile{kPlane + "publish: {viewports: [{name: x, azimuth_deg: [1, 0]}]}\n",
+                "rig.yaml:6: publish.viewports[0].azimuth_deg is a list of 2, must be absent with "
+                "projection plane"},
+        BadFile{
+            kPlane + "publish: {viewports: [{name: x, columns_px: [50, 20]}]}\n",
+            "rig.yaml:6: publish.viewports[0].columns_px is a list of 2, must be two numbers, the "
+            "first smaller"},
+        BadFile{kSimulated + "publish: {preview: {rate_hz: 6}}\n",
+                "rig.yaml:6: publish.preview.rate_hz is 6, must be 0 to 5"},
+        BadFile{kSimulated + "publish: {overlay: {channel: PANORAMA}}\n",
+                "rig.yaml:6: publish.overlay.channel is PANORAMA, must be a channel of its own"},
         BadFile{kSimulated + "publish: {status_channel: a/b}\n",
                 "rig.yaml:6: publish.status_channel is a/b, must be an LCM channel: letters, "
                 "digits and _, at most 63 characters"},
@@ -412,6 +433,9 @@ INSTANTIATE_TEST_SUITE_P(Sections, RigExampleKeysTest,
                                          "simulation: {x: 1}\n", "stabilization: {x: 1}\n",
                                          "stitching: {x: 1}\n", "threads: {x: 1}\n",
                                          "real_time: {x: 1}\n", "can: {x: 1}\n",
+                                         "publish: {viewports: [{x: 1}]}\n",
+                                         "publish: {preview: {x: 1}}\n",
+                                         "publish: {overlay: {x: 1}}\n",
                                          "can: {hitch_angle: {x: 1}}\n", "publish: {x: 1}\n",
                                          "record: {x: 1}\n"));
 

@@ -2,6 +2,7 @@
 
 #include "app/display.hpp"
 #include "app/jpeg_encoder.hpp"
+#include "app/jpeg_picture.hpp"
 #include "tests/support/i420_picture.hpp"
 
 namespace hitchview::app {
@@ -13,8 +14,6 @@ using tests::I420Picture;
 bool AreEqual(const cv::Mat& a, const cv::Mat& b) {
     return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
-
-const cv::Mat kPicture(90, 512, CV_8UC3, cv::Scalar(10, 200, 30));
 
 class Sender {
  public:
@@ -38,22 +37,90 @@ class Sender {
 };
 
 TEST(DisplayTest, AYoungPictureIsShownAsItIs) {
-    EXPECT_TRUE(
-        AreEqual(Display::Compose(kPicture, milliseconds(500), milliseconds(500)), kPicture));
+    Display display(milliseconds(500));
+    Sender sender;
+    const hal::PanoramaImage image = sender.Send(3);
+    ASSERT_TRUE(display.Update(image, milliseconds(1000)));
+    cv::Mat expected;
+    ASSERT_TRUE(DecodeJpeg(image.jpeg, {64, 32}, expected));
+    EXPECT_TRUE(AreEqual(display.Shown(milliseconds(1500)), expected));
+    EXPECT_EQ(display.Reason(milliseconds(1500)), "");
 }
 
 TEST(DisplayTest, AnOldPictureIsReplacedByLetteringOnAPlainBackground) {
-    const cv::Mat shown = Display::Compose(kPicture, milliseconds(501), milliseconds(500));
+    Display display(milliseconds(500));
+    Sender sender;
+    ASSERT_TRUE(display.Update(sender.Send(3), milliseconds(1000)));
+    const cv::Mat shown = display.Shown(milliseconds(1501));
 
-    ASSERT_EQ(shown.size(), kPicture.size());
+    ASSERT_EQ(shown.size(), cv::Size(64, 32));
     const cv::Vec3b background = shown.at<cv::Vec3b>(0, 0);
     const cv::Mat border_rows = shown.rowRange(0, 3);
     EXPECT_EQ(cv::norm(border_rows, cv::Mat(border_rows.size(), CV_8UC3, background), cv::NORM_INF),
               0);
-    EXPECT_NE(background, kPicture.at<cv::Vec3b>(0, 0));
-    cv::Mat white;
-    cv::inRange(shown, cv::Scalar::all(255), cv::Scalar::all(255), white);
-    EXPECT_GT(cv::countNonZero(white), 100) << "the words";
+    EXPECT_NE(background, display.Shown(milliseconds(1500)).at<cv::Vec3b>(0, 0));
+    cv::Mat bright;
+    cv::inRange(shown, cv::Scalar::all(200), cv::Scalar::all(255), bright);
+    EXPECT_GT(cv::countNonZero(bright), 20) << "the words";
+}
+
+TEST(DisplayTest, TheReasonForNoPictureIsSaid) {
+    Display display(milliseconds(500));
+    EXPECT_EQ(display.Reason(milliseconds(0)), "no publisher");
+    display.SetCameraNames({"front"});
+    EXPECT_EQ(display.Reason(milliseconds(0)), "the publisher sends no pictures");
+    Sender sender;
+    ASSERT_TRUE(display.Update(sender.Send(0), milliseconds(1000)));
+    EXPECT_EQ(display.Reason(milliseconds(3260)), "the newest picture is 2.2 s old");
+    display.NoteDamaged();
+    EXPECT_EQ(display.Reason(milliseconds(3260)), "what comes is damaged");
+}
+
+TEST(DisplayTest, CamerasThatGiveNoPictureAreNamedOrNumbered) {
+    Display display(milliseconds(500));
+    Sender sender;
+    hal::PanoramaImage image = sender.Send(0);
+    image.cameras_missing = 0b1010;
+    ASSERT_TRUE(display.Update(image, milliseconds(0)));
+    EXPECT_EQ(display.MissingCameras(), "camera 1, camera 3");
+    display.SetCameraNames({"front", "left", "right"});
+    EXPECT_EQ(display.MissingCameras(), "left, camera 3");
+    const cv::Mat shown = display.Shown(milliseconds(0));
+    cv::Mat whole;
+    ASSERT_TRUE(DecodeJpeg(image.jpeg, {64, 32}, whole));
+    EXPECT_FALSE(AreEqual(shown, whole));
+    EXPECT_TRUE(AreEqual(shown.rowRange(0, 24), whole.rowRange(0, 24)));
+}
+
+TEST(DisplayTest, APictureThatWasLateOnItsWayIsOldWhenItComes) {
+    Display display(milliseconds(100));
+    Sender sender;  // a picture each 33 ms of its clock
+    ASSERT_TRUE(display.Update(sender.Send(0), milliseconds(1000)));
+    ASSERT_TRUE(display.Update(sender.Send(1), milliseconds(1033 + 90)));
+    EXPECT_TRUE(display.IsLive(milliseconds(1033 + 95)));
+    ASSERT_TRUE(display.Update(sender.Send(2), milliseconds(1066 + 120)));
+    EXPECT_FALSE(display.IsLive(milliseconds(1066 + 120)));
+}
+
+TEST(PictureAgeTest, ASenderThatBeginsAnewHasAYoungPicture) {
+    PictureAge age;
+    EXPECT_FALSE(age.At(milliseconds(5)));
+    age.Note(milliseconds(900'000), milliseconds(1000));
+    EXPECT_EQ(*age.At(milliseconds(1040)), milliseconds(40));
+    age.Note(milliseconds(50), milliseconds(1100));  // its clock was set back: it was restarted
+    EXPECT_EQ(*age.At(milliseconds(1100)), milliseconds(0));
+    age.Note(milliseconds(60), milliseconds(9000));  // long after
+    EXPECT_EQ(*age.At(milliseconds(9000)), milliseconds(0));
+}
+
+TEST(PictureAgeTest, ClocksThatDriftByAHundredPpmDoNotMakePicturesOld) {
+    PictureAge age;
+    hal::Instant captured{};
+    for (hal::Instant now{}; now < std::chrono::minutes(10); now += milliseconds(33)) {
+        captured = now - now / 10'000;
+        age.Note(captured, now);
+        ASSERT_LE(*age.At(now), milliseconds(1));
+    }
 }
 
 TEST(DisplayTest, BeforeTheFirstPictureThereIsNoImage) {

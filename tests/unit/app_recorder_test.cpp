@@ -208,10 +208,10 @@ TEST(RecorderTest, ATriggerBringsTheSecondsBeforeIt) {
     drive.Run(100);  // until 9.9 s
     while (drive.recorder->Summarise().cameras[0].recorded < 100) std::this_thread::yield();
     while (drive.recorder->Summarise().cameras[2].recorded < 100) std::this_thread::yield();
-    EXPECT_EQ(drive.recorder->Level().state, RecordingState::kArmed);
+    EXPECT_EQ(drive.recorder->Level().state, hal::RecordingState::kArmed);
     EXPECT_TRUE(tests::Segments(folder.path()).empty());
     trigger = true;
-    while (drive.recorder->Level().state != RecordingState::kOn) std::this_thread::yield();
+    while (drive.recorder->Level().state != hal::RecordingState::kOn) std::this_thread::yield();
     drive.Run(20);
     drive.recorder->Finish();
     const auto events = tests::RecordedEvents(folder.path());
@@ -243,7 +243,7 @@ TEST(RecorderTest, WhatMemoryCannotKeepIsTheOldest) {
     for (std::size_t i = 0; i < 3; ++i)
         while (drive.recorder->Summarise().cameras[i].recorded < 200) std::this_thread::yield();
     drive.recorder->Trigger();
-    while (drive.recorder->Level().state != RecordingState::kOn) std::this_thread::yield();
+    while (drive.recorder->Level().state != hal::RecordingState::kOn) std::this_thread::yield();
     drive.recorder->Finish();
     const auto events = tests::RecordedEvents(folder.path());
     std::size_t kept = 0;
@@ -270,9 +270,9 @@ TEST(RecorderTest, AfterATriggerItEndsAndIsArmedAgain) {
             while (drive.recorder->Summarise().cameras[i].recorded < 60U * round + 30)
                 std::this_thread::yield();
         drive.recorder->Trigger();
-        while (drive.recorder->Level().state != RecordingState::kOn) std::this_thread::yield();
+        while (drive.recorder->Level().state != hal::RecordingState::kOn) std::this_thread::yield();
         drive.Run(30);
-        while (drive.recorder->Level().state != RecordingState::kArmed) std::this_thread::yield();
+        while (drive.recorder->Level().state != hal::RecordingState::kArmed) std::this_thread::yield();
     }
     drive.recorder->Finish();
     const auto events = drive.Events();
@@ -291,9 +291,9 @@ TEST(RecorderTest, ALostCameraTriggersWhereItShould) {
         drive.Run(5);
         drive.recorder->Note({.code = hal::EventCode::kCameraBack});
         std::this_thread::sleep_for(milliseconds(120));
-        EXPECT_EQ(drive.recorder->Level().state, RecordingState::kArmed);
+        EXPECT_EQ(drive.recorder->Level().state, hal::RecordingState::kArmed);
         drive.recorder->Note({.code = hal::EventCode::kCameraLost});
-        while (triggers && drive.recorder->Level().state != RecordingState::kOn)
+        while (triggers && drive.recorder->Level().state != hal::RecordingState::kOn)
             std::this_thread::yield();
         drive.recorder->Finish();
         EXPECT_EQ(tests::Segments(folder.path()).size(), triggers ? 1U : 0U);
@@ -317,7 +317,7 @@ TEST(RecorderTest, BelowTheFloorOfFreeSpaceItSaysSoOnceAndNobodyWaits) {
     for (std::size_t i = 1; i < events.size(); ++i)
         EXPECT_EQ(events[i].code, hal::EventCode::kRecordingDropped);
     EXPECT_GT(drive.recorder->Level().dropped, 0U);
-    EXPECT_EQ(drive.recorder->Level().state, RecordingState::kStopped);
+    EXPECT_EQ(drive.recorder->Level().state, hal::RecordingState::kStopped);
     EXPECT_TRUE(tests::Segments(folder.path()).empty());
 }
 

@@ -10,7 +10,9 @@
 #include "hal/fake_clock.hpp"
 #include "lcmtypes/bot_core_image_t.h"
 #include "lcmtypes/hitchview_event_t.h"
+#include "lcmtypes/hitchview_health_t.h"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
+#include "lcmtypes/hitchview_overlay_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 
 namespace hitchview::drivers {
@@ -223,6 +225,182 @@ TEST_F(LcmPublisherTest, AnEventKeepsEveryField) {
     hitchview_event_t_decode_cleanup(&message);
 }
 
+hal::Health FullHealth() {
+    hal::Health health{.measured_at = milliseconds(5),
+                       .version = std::string_view("1.2.3"),
+                       .calibration_id = std::string_view("5f3c"),
+                       .uptime_s = 12.5,
+                       .panoramas_per_s = 30,
+                       .panoramas = 375,
+                       .dropped = 4,
+                       .deadline_misses = 6,
+                       .events_lost = 1,
+                       .image_bytes = 98'000,
+                       .image_budget_bytes = 150'000,
+                       .image_quality = 71,
+                       .receive_buffer_bytes = 212'992,
+                       .warning = std::string_view("put this right"),
+                       .rss_bytes = 123'456'789,
+                       .minor_faults = 7,
+                       .major_faults = 2,
+                       .heap_calls = 0,
+                       .recording = {hal::RecordingState::kOn, 1'000'000, 3, 5'000'000}};
+    health.cameras.Add({.name = std::string_view("front"),
+                        .unit = std::string_view("tractor"),
+                        .shown = true,
+                        .frames_per_s = 29.5,
+                        .age_ms = 41,
+                        .delivered = 370,
+                        .lost = 5,
+                        .corrupted = 2,
+                        .reopened = 1});
+    health.stages.Add({std::string_view("motion"), 1, 2, 3, 4});
+    health.stages.Add({std::string_view("total"), 5, 6, 7, 8});
+    return health;
+}
+
+TEST_F(LcmPublisherTest, HealthKeepsEveryField) {
+    ASSERT_TRUE(Publisher()->Publish(FullHealth()));
+
+    auto message = Read("PANORAMA_HEALTH", hitchview_health_t_decode);
+    EXPECT_EQ(message.sequence, 0);
+    EXPECT_EQ(message.utime, 1'700'000'000'005'000);
+    EXPECT_EQ(message.monotonic_ns, 5'000'000);
+    EXPECT_STREQ(message.version, "1.2.3");
+    EXPECT_STREQ(message.calibration_id, "5f3c");
+    EXPECT_EQ(message.uptime_s, 12.5);
+    EXPECT_EQ(message.panoramas_per_s, 30);
+    EXPECT_EQ(message.panoramas, 375);
+    EXPECT_EQ(message.dropped, 4);
+    EXPECT_EQ(message.deadline_misses, 6);
+    EXPECT_EQ(message.events_lost, 1);
+    EXPECT_EQ(message.image_bytes, 98'000);
+    EXPECT_EQ(message.image_budget_bytes, 150'000);
+    EXPECT_EQ(message.image_quality, 71);
+    EXPECT_EQ(message.receive_buffer_bytes, 212'992);
+    EXPECT_STREQ(message.warning, "put this right");
+    EXPECT_EQ(message.rss_bytes, 123'456'789);
+    EXPECT_EQ(message.minor_faults, 7);
+    EXPECT_EQ(message.major_faults, 2);
+    EXPECT_EQ(message.heap_calls, 0);
+    EXPECT_EQ(message.recording, HITCHVIEW_HEALTH_T_RECORDING_ON);
+    EXPECT_EQ(message.recorded_bytes, 1'000'000);
+    EXPECT_EQ(message.recording_dropped, 3);
+    EXPECT_EQ(message.disk_free_bytes, 5'000'000);
+    hitchview_health_t_decode_cleanup(&message);
+}
+
+TEST_F(LcmPublisherTest, HealthHasItsCamerasAndStages) {
+    ASSERT_TRUE(Publisher()->Publish(FullHealth()));
+
+    auto message = Read("PANORAMA_HEALTH", hitchview_health_t_decode);
+    ASSERT_EQ(message.ncameras, 1);
+    const hitchview_camera_health_t& camera = message.cameras[0];
+    EXPECT_STREQ(camera.name, "front");
+    EXPECT_STREQ(camera.unit, "tractor");
+    EXPECT_EQ(camera.shown, 1);
+    EXPECT_EQ(camera.frames_per_s, 29.5);
+    EXPECT_EQ(camera.age_ms, 41);
+    EXPECT_EQ(camera.delivered, 370);
+    EXPECT_EQ(camera.lost, 5);
+    EXPECT_EQ(camera.corrupted, 2);
+    EXPECT_EQ(camera.reopened, 1);
+    ASSERT_EQ(message.nstages, 2);
+    EXPECT_STREQ(message.stages[0].name, "motion");
+    EXPECT_STREQ(message.stages[1].name, "total");
+    EXPECT_EQ(message.stages[1].last_ms, 5);
+    EXPECT_EQ(message.stages[1].p50_ms, 6);
+    EXPECT_EQ(message.stages[1].p99_ms, 7);
+    EXPECT_EQ(message.stages[1].max_ms, 8);
+    hitchview_health_t_decode_cleanup(&message);
+}
+
+TEST_F(LcmPublisherTest, TheLongestHealthFits) {
+    const std::string word(300, 'w');
+    hal::Health health{.version = std::string_view(word),
+                       .calibration_id = std::string_view(word),
+                       .warning = std::string_view(word)};
+    for (int i = 0; i < 20; ++i) {
+        health.cameras.Add({.name = std::string_view(word), .unit = std::string_view(word)});
+        health.stages.Add({.name = std::string_view(word)});
+    }
+    ASSERT_TRUE(Publisher(1024)->Publish(health));
+
+    auto message = Read("PANORAMA_HEALTH", hitchview_health_t_decode);
+    EXPECT_EQ(message.ncameras, 8);
+    EXPECT_EQ(message.nstages, 12);
+    hitchview_health_t_decode_cleanup(&message);
+}
+
+TEST_F(LcmPublisherTest, AViewportIsAnImageWithThePanoramasProperties) {
+    hal::ViewportImage viewport{.channel = "VIEW_REAR", .image = Image(kJpeg)};
+    viewport.image.width_px = 340;
+    ASSERT_TRUE(Publisher()->Publish(viewport));
+
+    auto message = Read("VIEW_REAR", bot_core_image_t_decode);
+    EXPECT_EQ(message.width, 340);
+    ASSERT_EQ(message.nmetadata, 5);
+    EXPECT_EQ(Text(message.metadata[0]), "sequence=4000000000");
+    EXPECT_EQ(Text(message.metadata[3]), "cameras_missing=0x00000081");
+    bot_core_image_t_decode_cleanup(&message);
+}
+
+TEST_F(LcmPublisherTest, APreviewIsAnImageWithItsNumberAndMoment) {
+    ASSERT_TRUE(Publisher()->Publish(hal::PreviewImage{.channel = "PREVIEW_REAR",
+                                                       .sequence = 12,
+                                                       .captured_at = milliseconds(20),
+                                                       .width_px = 192,
+                                                       .height_px = 108,
+                                                       .jpeg = kJpeg}));
+
+    auto message = Read("PREVIEW_REAR", bot_core_image_t_decode);
+    EXPECT_EQ(message.utime, 1'700'000'000'020'000);
+    EXPECT_EQ(message.width, 192);
+    EXPECT_EQ(message.height, 108);
+    EXPECT_EQ(std::vector<std::uint8_t>(message.data, message.data + message.size), kJpeg);
+    ASSERT_EQ(message.nmetadata, 2);
+    EXPECT_EQ(Text(message.metadata[0]), "sequence=12");
+    EXPECT_EQ(Text(message.metadata[1]), "captured_ns=20000000");
+    bot_core_image_t_decode_cleanup(&message);
+}
+
+TEST_F(LcmPublisherTest, AnOverlayKeepsEveryField) {
+    const std::vector<float> x{1, 2, 3, 4};
+    const std::vector<float> y{5, 6, 7, 8};
+    const std::vector<float> rows{-0.5F, 7.5F, 15.5F};
+    const std::vector<float> left{100, 101, 102};
+    const std::vector<float> right{200, 201, 202};
+    ASSERT_TRUE(Publisher()->Publish(hal::Overlay{.sequence = 9,
+                                                  .captured_from = milliseconds(30),
+                                                  .width_px = 2048,
+                                                  .height_px = 360,
+                                                  .mesh_rows = 1,
+                                                  .mesh_cols = 2,
+                                                  .mesh_x = x,
+                                                  .mesh_y = y,
+                                                  .seam_y = rows,
+                                                  .left_seam_x = left,
+                                                  .right_seam_x = right}));
+
+    auto message = Read("PANORAMA_OVERLAY", hitchview_overlay_t_decode);
+    const auto values = [](const float* first, int count) {
+        return std::vector<float>(first, first + count);
+    };
+    EXPECT_EQ(message.sequence, 9);
+    EXPECT_EQ(message.utime, 1'700'000'000'030'000);
+    EXPECT_EQ(message.capture_ns, 30'000'000);
+    EXPECT_EQ(message.width, 2048);
+    EXPECT_EQ(message.height, 360);
+    EXPECT_EQ(message.mesh_rows, 1);
+    EXPECT_EQ(message.mesh_cols, 2);
+    EXPECT_EQ(values(message.mesh_x, message.nvertices), x);
+    EXPECT_EQ(values(message.mesh_y, message.nvertices), y);
+    EXPECT_EQ(values(message.seam_y, message.seam_rows), rows);
+    EXPECT_EQ(values(message.left_seam_x, message.seam_rows), left);
+    EXPECT_EQ(values(message.right_seam_x, message.seam_rows), right);
+    hitchview_overlay_t_decode_cleanup(&message);
+}
+
 TEST(LcmPublisherOptionsTest, AMistakeIsNamed) {
     const hal::FakeClock clock;
     const struct {
@@ -234,6 +412,7 @@ TEST(LcmPublisherOptionsTest, AMistakeIsNamed) {
         {{.messages = {.status_channel = ""}}, "status_channel is ''"},
         {{.messages = {.hitch_angle_channel = "A B"}}, "hitch_angle_channel is 'A B'"},
         {{.messages = {.event_channel = "A/B"}}, "event_channel is 'A/B'"},
+        {{.messages = {.health_channel = "A-B"}}, "health_channel is 'A-B'"},
         {{.messages = {.max_image_bytes = 100}}, "max_image_bytes is 100, must be 1024 to 8388608"},
     };
     for (const auto& c : cases) {

@@ -10,7 +10,9 @@
 
 #include "lcmtypes/bot_core_image_t.h"
 #include "lcmtypes/hitchview_event_t.h"
+#include "lcmtypes/hitchview_health_t.h"
 #include "lcmtypes/hitchview_hitch_angle_t.h"
+#include "lcmtypes/hitchview_overlay_t.h"
 #include "lcmtypes/hitchview_panorama_status_t.h"
 
 // The first eight bytes of every LCM message are a hash of its type. Receivers built from their
@@ -129,6 +131,76 @@ TEST(FingerprintTest, TheEventHasNotChanged) {
     message.subject = message.text = none.data();
 
     EXPECT_EQ(WireFingerprint(hitchview_event_t_encode, message), event.Fingerprint());
+}
+
+TEST(FingerprintTest, HealthHasNotChanged) {
+    const TypeHash camera({{"string", "name", ""},
+                           {"string", "unit", ""},
+                           {"boolean", "shown", ""},
+                           {"double", "frames_per_s", ""},
+                           {"double", "age_ms", ""},
+                           {"int64_t", "delivered", ""},
+                           {"int64_t", "lost", ""},
+                           {"int64_t", "corrupted", ""},
+                           {"int64_t", "reopened", ""}});
+    const TypeHash stage({{"string", "name", ""},
+                          {"double", "last_ms", ""},
+                          {"double", "p50_ms", ""},
+                          {"double", "p99_ms", ""},
+                          {"double", "max_ms", ""}});
+    const TypeHash health({{"int32_t", "sequence", ""},
+                           {"int64_t", "utime", ""},
+                           {"int64_t", "monotonic_ns", ""},
+                           {"string", "version", ""},
+                           {"string", "calibration_id", ""},
+                           {"double", "uptime_s", ""},
+                           {"double", "panoramas_per_s", ""},
+                           {"int64_t", "panoramas", ""},
+                           {"int64_t", "dropped", ""},
+                           {"int64_t", "deadline_misses", ""},
+                           {"int64_t", "events_lost", ""},
+                           {"int32_t", "image_bytes", ""},
+                           {"int32_t", "image_budget_bytes", ""},
+                           {"int32_t", "image_quality", ""},
+                           {"int32_t", "receive_buffer_bytes", ""},
+                           {"string", "warning", ""},
+                           {"int64_t", "rss_bytes", ""},
+                           {"int64_t", "minor_faults", ""},
+                           {"int64_t", "major_faults", ""},
+                           {"int64_t", "heap_calls", ""},
+                           {"int8_t", "recording", ""},
+                           {"int64_t", "recorded_bytes", ""},
+                           {"int64_t", "recording_dropped", ""},
+                           {"int64_t", "disk_free_bytes", ""},
+                           {"int32_t", "ncameras", ""},
+                           {"", "cameras", "ncameras"},
+                           {"int32_t", "nstages", ""},
+                           {"", "stages", "nstages"}});
+    std::string none;
+    hitchview_health_t message{};
+    message.version = message.calibration_id = message.warning = none.data();
+
+    EXPECT_EQ(WireFingerprint(hitchview_health_t_encode, message),
+              health.Fingerprint(camera.Fingerprint() + stage.Fingerprint()));
+}
+
+TEST(FingerprintTest, TheOverlayHasNotChanged) {
+    const TypeHash overlay({{"int32_t", "sequence", ""},
+                            {"int64_t", "utime", ""},
+                            {"int64_t", "capture_ns", ""},
+                            {"int32_t", "width", ""},
+                            {"int32_t", "height", ""},
+                            {"int32_t", "mesh_rows", ""},
+                            {"int32_t", "mesh_cols", ""},
+                            {"int32_t", "nvertices", ""},
+                            {"float", "mesh_x", "nvertices"},
+                            {"float", "mesh_y", "nvertices"},
+                            {"int32_t", "seam_rows", ""},
+                            {"float", "seam_y", "seam_rows"},
+                            {"float", "left_seam_x", "seam_rows"},
+                            {"float", "right_seam_x", "seam_rows"}});
+
+    EXPECT_EQ(WireFingerprint(hitchview_overlay_t_encode), overlay.Fingerprint());
 }
 
 }  // namespace
