@@ -42,8 +42,9 @@ class LogReplay final : public FrameSynchronizer {
     static constexpr std::size_t kMostEarlyCanFrames = 256;
     static constexpr int kSurelyPastEnd = 16;  ///< events in a row
 
-    /// Cameras and bus (null: none) must outlive it, `cameras` in the order of the rig.
-    /// The error names a recording that cannot be read.
+    /// Begins to read. Cameras and bus (null: none) must outlive it, `cameras` in the order of the
+    /// rig. A recording that cannot be read, or cannot go on, ends with kFailed and a word on
+    /// stderr.
     LogReplay(const RigConfig& config, hal::Instant period, std::vector<LogCamera> cameras,
               drivers::LcmLogCanBus* can_bus);
     ~LogReplay() override;

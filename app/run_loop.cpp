@@ -147,21 +147,9 @@ void Complete(const RigConfig& config, Board& board, const RunOutputs& outputs,
     outputs.AddPools(summary.pools);
 }
 
-}  // namespace
-
-void ArticulationSummary::Add(const algo::Articulation& articulation) {
-    const double angle_rad = articulation.angle_rad;
-    least_rad = frames == 0 ? angle_rad : std::min(least_rad, angle_rad);
-    most_rad = frames == 0 ? angle_rad : std::max(most_rad, angle_rad);
-    variances += articulation.sigma_rad * articulation.sigma_rad;
-    ++frames;
-}
-
-hal::Checked<RunSummary> RunRig(const RigConfig& rig_config, const RunOptions& options,
-                                const std::atomic<bool>& stop, const ShownHook& hook) {
-    const auto resolved = ResolveLogs(rig_config, stop);
-    if (!resolved) return resolved.error();
-    const RigConfig& config = resolved.value();
+/// Of a rig whose logs are resolved.
+hal::Checked<RunSummary> Run(const RigConfig& config, const RunOptions& options,
+                             const std::atomic<bool>& stop, const ShownHook& hook) {
     if (config.IsLive() && !options.realtime)
         return config.file.string() +
                ": its cameras are live: use run; the other verbs need recordings";
@@ -215,6 +203,23 @@ hal::Checked<RunSummary> RunRig(const RigConfig& rig_config, const RunOptions& o
     if (!finished) return finished.error();
     Complete(config, **board, **outputs, summary);
     return summary;
+}
+
+}  // namespace
+
+void ArticulationSummary::Add(const algo::Articulation& articulation) {
+    const double angle_rad = articulation.angle_rad;
+    least_rad = frames == 0 ? angle_rad : std::min(least_rad, angle_rad);
+    most_rad = frames == 0 ? angle_rad : std::max(most_rad, angle_rad);
+    variances += articulation.sigma_rad * articulation.sigma_rad;
+    ++frames;
+}
+
+hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& options,
+                                const std::atomic<bool>& stop, const ShownHook& hook) {
+    const auto resolved = ResolveLogs(config, stop);
+    if (!resolved) return resolved.error();
+    return Run(resolved.value(), options, stop, hook);
 }
 
 }  // namespace hitchview::app

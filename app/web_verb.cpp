@@ -59,6 +59,8 @@ Sources SourcesOf(const RigConfig& rig) {
     sources.channels.status = rig.publish.status_channel;
     sources.channels.hitch_angle = rig.publish.hitch_angle_channel;
     sources.channels.event = rig.publish.event_channel;
+    sources.channels.health = rig.publish.health_channel;
+    sources.channels.overlay = rig.publish.overlay.channel;
     for (const algo::Unit unit : algo::kUnits) {
         for (const CameraConfig& camera : rig.units[unit].cameras) {
             sources.cameras.push_back({.name = camera.name, .unit = algo::ToString(unit)});
