@@ -72,7 +72,7 @@ std::vector<SetSummary> SetsOf(const hal::Checked<RigConfig>& config) {
     std::vector<SetSummary> sets;
     EXPECT_TRUE(config) << config.error();
     if (!config) return sets;
-    auto board = std::move(*Board::Open(config.value(), 2));
+    auto board = std::move(*Board::Open(config.value(), {.held_frames = 2}));
     while (const auto set = board->sets().WaitSet())
         sets.push_back({set.value().sequence, set.value().cameras_missing});
     return sets;

@@ -78,7 +78,7 @@ inline LoggedPicture PictureOf(const hal::FrameView& frame) {
 inline RecordedDrive RecordDrive(const std::string& rig_file) {
     const app::RigConfig config = app::LoadRigConfig(rig_file).value();
     const calib::RigCalibration calibration = app::LoadCalibrationFor(config).value();
-    auto board = std::move(*app::Board::Open(config, 2));
+    auto board = std::move(*app::Board::Open(config, {.held_frames = 2}));
     RecordedDrive drive{.texts = {.rig = FileText(rig_file),
                                   .calibration = FileText(config.calibration),
                                   .calibration_id = calibration.id()},
