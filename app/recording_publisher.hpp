@@ -32,7 +32,9 @@ class RecordingPublisher final : public hal::Publisher {
         return Keep(encoder_->Encode(event));
     }
     hal::Result<hal::Done> DoPublish(const hal::Health& health) override {
-        return Keep(encoder_->Encode(health));
+        hal::Health then = health;
+        then.measured_at = recorder_.intake().Now();
+        return Keep(encoder_->Encode(then));
     }
     hal::Result<hal::Done> Keep(const hal::Result<drivers::LcmMessage>& message) {
         if (!message) return message.error();

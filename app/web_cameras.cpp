@@ -23,7 +23,8 @@ bool IsRecent(std::optional<Instant> maybe_at, Instant now, milliseconds holds) 
     return maybe_at && now - *maybe_at <= holds;
 }
 
-WebCamera CameraOf(const drivers::LoggedCameraHealth& health) {
+/// `began`: a panorama was made, before that none shows a camera.
+WebCamera CameraOf(const drivers::LoggedCameraHealth& health, bool began) {
     return {.name = std::string(health.name),
             .unit = std::string(health.unit),
             .frames_per_s = health.frames_per_s,
@@ -33,7 +34,7 @@ WebCamera CameraOf(const drivers::LoggedCameraHealth& health) {
             .corrupted = health.corrupted,
             .reopened = health.reopened,
             .has_figures = true,
-            .shown = health.shown};
+            .shown = health.shown || !began};
 }
 
 }  // namespace
@@ -71,7 +72,7 @@ void WebCameras::TakeMissing(std::uint32_t cameras_missing, Instant now) {
 void WebCameras::TakeHealth(const drivers::LoggedHealth& health, Instant now) {
     std::vector<WebCamera> cameras;
     for (const auto& told : health.cameras) {
-        WebCamera camera = CameraOf(told);
+        WebCamera camera = CameraOf(told, health.panoramas > 0);
         const auto known = std::ranges::find(cameras_, camera.name, &WebCamera::name);
         if (known != cameras_.end()) camera.lost_since = known->lost_since;
         cameras.push_back(std::move(camera));
@@ -91,8 +92,11 @@ void WebCameras::TakeEvent(const drivers::LoggedEvent& event, Instant now) {
 }
 
 bool WebCameras::IsLost(std::size_t camera, Instant now) const {
-    const bool missing = IsRecent(status_at_, now, kStatusHolds) && (missing_ >> camera & 1U) != 0;
-    const bool hidden = IsRecent(health_at_, now, kHealthHolds) && !cameras_[camera].shown;
+    const bool status = IsRecent(status_at_, now, kStatusHolds);
+    const bool missing = status && (missing_ >> camera & 1U) != 0;
+    // The status comes with every panorama, health once a second.
+    const bool hidden =
+        !status && IsRecent(health_at_, now, kHealthHolds) && !cameras_[camera].shown;
     return missing || hidden || cameras_[camera].lost_since;
 }
 
