@@ -94,9 +94,10 @@ void WebCameras::TakeEvent(const drivers::LoggedEvent& event, Instant now) {
 bool WebCameras::IsLost(std::size_t camera, Instant now) const {
     const bool status = IsRecent(status_at_, now, kStatusHolds);
     const bool missing = status && (missing_ >> camera & 1U) != 0;
-    // The status comes with every panorama, health once a second.
+    // The status comes with every panorama, health once a second: the newer one counts.
+    const bool newest = !status || health_at_ >= status_at_;
     const bool hidden =
-        !status && IsRecent(health_at_, now, kHealthHolds) && !cameras_[camera].shown;
+        newest && IsRecent(health_at_, now, kHealthHolds) && !cameras_[camera].shown;
     return missing || hidden || cameras_[camera].lost_since;
 }
 
