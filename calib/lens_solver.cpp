@@ -179,6 +179,21 @@ double ErrorVariance(const LensProblem& problem, const LensSolverOptions& option
                     : std::numeric_limits<double>::infinity();
 }
 
+std::optional<LensSolution> Finish(const LensProblem& problem, const LensSolverOptions& options,
+                                   State& state) {
+    LensSolution solution;
+    solution.model = state.model;
+    solution.board_m = state.board_m;
+    Measure(problem, state, solution);
+    if (!std::isfinite(solution.rms_px)) return std::nullopt;
+    if (options.covariance) {
+        solution.covariance = Adjustment(problem, options, state).Covariance();
+        if (solution.covariance)
+            *solution.covariance *= ErrorVariance(problem, options, solution.rms_px);
+    }
+    return solution;
+}
+
 }  // namespace
 
 std::optional<LensSolution> SolveLens(const LensProblem& problem,
@@ -186,17 +201,16 @@ std::optional<LensSolution> SolveLens(const LensProblem& problem,
     if (problem.views.empty()) return std::nullopt;
     auto state = FirstState(problem);
     if (!state || !Adjust(problem, options, *state)) return std::nullopt;
-    LensSolution solution;
-    solution.model = state->model;
-    solution.board_m = state->board_m;
-    Measure(problem, *state, solution);
-    if (!std::isfinite(solution.rms_px)) return std::nullopt;
-    if (options.covariance) {
-        solution.covariance = Adjustment(problem, options, *state).Covariance();
-        if (solution.covariance)
-            *solution.covariance *= ErrorVariance(problem, options, solution.rms_px);
-    }
-    return solution;
+    return Finish(problem, options, *state);
+}
+
+std::optional<LensSolution> SolveLensFrom(const LensSolution& start, const LensProblem& problem,
+                                          const LensSolverOptions& options) {
+    State state{start.model, {}, start.board_m};
+    if (problem.views.empty() || !std::isfinite(FitPlaces(problem, state))) return std::nullopt;
+    if (options.shape == BoardShape::kFlat) state.board_m = problem.board.Corners();
+    if (!Adjustment(problem, options, state).Solve()) return std::nullopt;
+    return Finish(problem, options, state);
 }
 
 }  // namespace hitchview::calib

@@ -57,6 +57,10 @@ struct LensSolverOptions {
 /// no lens. Thread-safe, and its result does not depend on the machine's load.
 std::optional<LensSolution> SolveLens(const LensProblem& problem, const LensSolverOptions& options);
 
+/// The same from a solution for other views of the same lens and board.
+std::optional<LensSolution> SolveLensFrom(const LensSolution& start, const LensProblem& problem,
+                                          const LensSolverOptions& options);
+
 /// Place of a board that a known lens sees. Empty: too far from the axis, or degenerate.
 std::optional<Eigen::Isometry3d> SolvePlace(const algo::CameraModel& model,
                                             std::span<const Eigen::Vector3d> board_m,
