@@ -6,7 +6,7 @@
 
 #include "calib/lens_solver.hpp"
 #include "calib/projection_uncertainty.hpp"
-#include "calib/rig_calibration.hpp"
+#include "calib/verdict.hpp"
 
 namespace hitchview::calib {
 
