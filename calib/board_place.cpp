@@ -36,8 +36,9 @@ bool OnPlane(const std::vector<Vector3d>& directions, const Eigen::Quaterniond& 
     return true;
 }
 
-/// From a homography, without regard to the shape of the board.
-std::optional<Isometry3d> FirstPlace(const CameraModel& model, std::span<const Vector3d> board_m,
+}  // namespace
+
+std::optional<Isometry3d> RoughPlace(const CameraModel& model, std::span<const Vector3d> board_m,
                                      const Corners& corners) {
     const auto directions = Directions(model, corners);
     if (!directions) return std::nullopt;
@@ -61,11 +62,9 @@ std::optional<Isometry3d> FirstPlace(const CameraModel& model, std::span<const V
     return q_turned_camera.inverse() * T_turned_board;
 }
 
-}  // namespace
-
 std::optional<Isometry3d> SolvePlace(const CameraModel& model, std::span<const Vector3d> board_m,
                                      const Corners& corners) {
-    const auto first = FirstPlace(model, board_m, corners);
+    const auto first = RoughPlace(model, board_m, corners);
     if (!first) return std::nullopt;
     PlaceParameters place = Parameters(*first);
     LensParameters lens(model);

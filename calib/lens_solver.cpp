@@ -43,11 +43,12 @@ struct State {
 };
 
 /// The places of all boards for a lens, and how well they fit; infinite where one has none.
-double FitPlaces(const LensProblem& problem, State& state) {
+template <typename FindPlace>
+double FitPlaces(const LensProblem& problem, const FindPlace& find_place, State& state) {
     double sum = 0;
     state.places.clear();
     for (const Corners& corners : problem.views) {
-        const auto place = SolvePlace(state.model, state.board_m, corners);
+        const auto place = find_place(state.model, state.board_m, corners);
         if (!place) return std::numeric_limits<double>::infinity();
         sum += SquaredErrors(state.model, state.board_m, *place, corners);
         state.places.push_back(Parameters(*place));
@@ -64,7 +65,7 @@ std::optional<State> FirstState(const LensProblem& problem) {
     double least = std::numeric_limits<double>::infinity();
     for (double share = kShortest; share < kLongest; share *= kStep) {
         State state{PlainLens(problem, share * problem.width_px), {}, problem.board.Corners()};
-        const double errors = FitPlaces(problem, state);
+        const double errors = FitPlaces(problem, RoughPlace, state);
         if (errors >= least) continue;
         least = errors;
         best = std::move(state);
@@ -207,7 +208,8 @@ std::optional<LensSolution> SolveLens(const LensProblem& problem,
 std::optional<LensSolution> SolveLensFrom(const LensSolution& start, const LensProblem& problem,
                                           const LensSolverOptions& options) {
     State state{start.model, {}, start.board_m};
-    if (problem.views.empty() || !std::isfinite(FitPlaces(problem, state))) return std::nullopt;
+    if (problem.views.empty() || !std::isfinite(FitPlaces(problem, SolvePlace, state)))
+        return std::nullopt;
     if (options.shape == BoardShape::kFlat) state.board_m = problem.board.Corners();
     if (!Adjustment(problem, options, state).Solve()) return std::nullopt;
     return Finish(problem, options, state);

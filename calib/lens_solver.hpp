@@ -29,11 +29,11 @@ using LensCovariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 
 
 /// Lens, shape of the board and place of the board in each view that explain the corners best.
 struct LensSolution {
-    algo::CameraModel model;
-    std::vector<Eigen::Vector3d> board_m;           ///< corners, board frame
-    std::vector<Eigen::Isometry3d> T_camera_board;  ///< of each view
-    std::vector<double> view_rms_px;                ///< of each view
-    double rms_px = 0;                              ///< root of the mean squared distance
+    algo::CameraModel model{};
+    std::vector<Eigen::Vector3d> board_m{};           ///< corners, board frame
+    std::vector<Eigen::Isometry3d> T_camera_board{};  ///< of each view
+    std::vector<double> view_rms_px{};                ///< of each view
+    double rms_px = 0;                                ///< root of the mean squared distance
     /// Of the parameters, for independent errors of the size that is left; empty where the views do
     /// not determine them, or it was not asked for.
     std::optional<LensCovariance> covariance{};
@@ -60,6 +60,12 @@ std::optional<LensSolution> SolveLens(const LensProblem& problem, const LensSolv
 /// The same from a solution for other views of the same lens and board.
 std::optional<LensSolution> SolveLensFrom(const LensSolution& start, const LensProblem& problem,
                                           const LensSolverOptions& options);
+
+/// Place of a board that a roughly known lens sees, from a homography: without regard to the
+/// board's shape. Empty: too far from the axis, or degenerate.
+std::optional<Eigen::Isometry3d> RoughPlace(const algo::CameraModel& model,
+                                            std::span<const Eigen::Vector3d> board_m,
+                                            const Corners& corners);
 
 /// Place of a board that a known lens sees. Empty: too far from the axis, or degenerate.
 std::optional<Eigen::Isometry3d> SolvePlace(const algo::CameraModel& model,
