@@ -36,7 +36,7 @@ TEST_P(LensTest, NoiseOfThreeTenthsOfAPixelMovesFocalLengthAndCentreLittle) {
     const CameraModel truth = GetParam();
     const Board large{.columns = 14, .rows = 9, .square_m = 0.04};
     const auto found =
-        SolveLens(BoardViews(truth, large, 2).Problem(80, kNoise_px), {.covariance = true});
+        SolveLens(BoardViews(truth, large, 2).Problem(100, kNoise_px), {.covariance = true});
 
     ASSERT_TRUE(found && found->covariance);
     EXPECT_LT(2 * std::sqrt((*found->covariance)(0, 0)), 0.001 * truth.fx_px);
