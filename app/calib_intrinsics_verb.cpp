@@ -123,11 +123,14 @@ void Print(const calib::Intrinsics& lens, const BoardPictures& pictures) {
 }
 
 /// Why there is nothing to solve; empty if there is.
-std::string TooFew(const BoardPictures& pictures, const IntrinsicsOptions& options) {
+std::string Refusal(const BoardPictures& pictures, const IntrinsicsOptions& options) {
+    const std::string size = options.board.substr(0, options.board.find(','));
+    if (pictures.views.size() >= kFewestViews && 2 * pictures.larger_boards > pictures.views.size())
+        return "the board goes on beyond " + size +
+               " inner corners: count the corners between four squares, all of them";
     if (pictures.views.size() >= kFewestViews) return "";
-    return "a board of " + options.board.substr(0, options.board.find(',')) +
-           " inner corners is in " + std::to_string(pictures.views.size()) + " of " +
-           std::to_string(pictures.pictures) + " pictures, at least " +
+    return "a board of " + size + " inner corners is in " + std::to_string(pictures.views.size()) +
+           " of " + std::to_string(pictures.pictures) + " pictures, at least " +
            std::to_string(kFewestViews) +
            " are needed: count the corners between four squares, and let the whole board be seen";
 }
@@ -149,7 +152,7 @@ int IntrinsicsVerb(const IntrinsicsOptions& options) {
     const auto found = FindBoards(options.images, *board.board);
     if (!found) return Fail(kWrongUse, found.error());
     const BoardPictures& pictures = found.value();
-    if (const std::string why = TooFew(pictures, options); !why.empty())
+    if (const std::string why = Refusal(pictures, options); !why.empty())
         return Fail(kWrongUse, why);
     const auto lens =
         calib::MeasureIntrinsics(Problem(options, *board.board, pictures), Names(pictures));

@@ -11,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "calib/board_extent.hpp"
 #include "calib/chessboard_detector.hpp"
 
 namespace hitchview::app {
@@ -29,12 +30,15 @@ std::vector<std::string> Files(const std::string& pattern) {
 struct Look {
     cv::Size size_px{};  ///< empty: it cannot be read
     std::optional<std::vector<Eigen::Vector2d>> corners{};
+    bool larger_board = false;
 };
 
 Look LookAt(const std::string& file, const calib::Board& board) {
     const cv::Mat grey = cv::imread(file, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
     if (grey.empty()) return {};
-    return {grey.size(), calib::DetectChessboard(grey, board)};
+    auto corners = calib::DetectChessboard(grey, board);
+    const bool larger = corners && calib::GoesOnBeyond(grey, board, *corners);
+    return {grey.size(), std::move(corners), larger};
 }
 
 void ShowProgress(std::size_t done, std::size_t all) {
@@ -76,6 +80,7 @@ hal::Checked<BoardPictures> FindBoards(const std::string& pattern, const calib::
             return files[i] + ": is " + Text(looks[i].size_px) + ", must be " +
                    Text(looks[0].size_px) + " as " + files[0];
         if (!looks[i].corners) continue;
+        if (looks[i].larger_board) ++found.larger_boards;
         found.views.push_back(
             {std::filesystem::path(files[i]).filename().string(), std::move(*looks[i].corners)});
     }

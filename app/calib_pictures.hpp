@@ -14,6 +14,7 @@ struct BoardPictures {
     int height_px = 0;
     std::size_t pictures = 0;               ///< looked at
     std::vector<calib::BoardView> views{};  ///< those with the whole board
+    std::size_t larger_boards = 0;  ///< of these, those whose board goes on beyond its corners
 };
 
 /// Looks for the board in every picture that `pattern` (of the shell) names, on all processors, and
