@@ -9,6 +9,7 @@ packages=(
     g++ cmake ninja-build ccache pkg-config
     libeigen3-dev libopencv-dev libhwy-dev liblcm-dev liblcm-bin libyaml-cpp-dev libcli11-dev
     nlohmann-json3-dev libturbojpeg0-dev libjpeg-dev
+    libceres-dev
     libgtest-dev libgmock-dev libbenchmark-dev
     iproute2 util-linux qemu-user ffmpeg
 )
