@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "algo/camera_projection.hpp"
+
 namespace hitchview::algo {
 namespace {
 
@@ -11,9 +13,7 @@ using Eigen::Vector3d;
 constexpr int kMaxNewtonSteps = 30;
 
 double FisheyeRadius(const CameraModel& m, double theta) {
-    const auto& k = m.distortion;
-    const double t2 = theta * theta;
-    return theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+    return algo::FisheyeRadius(m.distortion.data(), theta);
 }
 
 double FisheyeRadiusDerivative(const CameraModel& m, double theta) {
@@ -23,13 +23,7 @@ double FisheyeRadiusDerivative(const CameraModel& m, double theta) {
 }
 
 Vector2d Radtan(const CameraModel& m, const Vector2d& n) {
-    const auto& [k1, k2, p1, p2, k3] = m.distortion;
-    const double a = n.x();
-    const double b = n.y();
-    const double r2 = a * a + b * b;
-    const double d = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-    return {a * d + 2 * p1 * a * b + p2 * (r2 + 2 * a * a),
-            b * d + p1 * (r2 + 2 * b * b) + 2 * p2 * a * b};
+    return algo::RadtanPoint(m.distortion.data(), n.x(), n.y());
 }
 
 Eigen::Matrix2d RadtanJacobian(const CameraModel& m, const Vector2d& n) {

@@ -2,10 +2,11 @@
 
 #include <yaml-cpp/emitter.h>
 
-#include <fstream>
 #include <numbers>
 #include <string_view>
 
+#include "calib/camera_model_yaml.hpp"
+#include "calib/replace_file.hpp"
 #include "calib/sha256.hpp"
 #include "calib/yaml_map.hpp"
 
@@ -23,34 +24,14 @@ std::string Quoted(const std::string& text) {
     return emitter.c_str();
 }
 
-std::string List(std::initializer_list<double> numbers) {
-    std::string text;
-    for (const double number : numbers) {
-        text.append(text.empty() ? "[" : ", ").append(ExactText(number));
-    }
-    return text + "]";
-}
-
-std::string Distortion(const algo::CameraModel& m) {
-    const auto& d = m.distortion;
-    return m.kind == algo::CameraModel::Kind::kPinholeRadtan ? List({d[0], d[1], d[2], d[3], d[4]})
-                                                             : List({d[0], d[1], d[2], d[3]});
-}
-
 std::string CameraText(const CalibratedCamera& camera) {
-    const algo::CameraModel& m = camera.model;
     const Quaterniond& q = camera.q_unit_camera;
     const Vector3d& p = camera.position_m;
     const std::string indent = "\n    ";
-    return indent + "unit: " + algo::ToString(camera.unit) +                         //
-           indent + "model: " + std::string(algo::ToString(m.kind)) +                //
-           indent + "size_px: " + List({double(m.width_px), double(m.height_px)}) +  //
-           indent + "focal_px: " + List({m.fx_px, m.fy_px}) +                        //
-           indent + "centre_px: " + List({m.cx_px, m.cy_px}) +                       //
-           indent + "distortion: " + Distortion(m) +                                 //
-           indent + "max_theta_rad: " + ExactText(m.max_theta_rad) +                 //
-           indent + "rotation: {quaternion_wxyz: " + List({q.w(), q.x(), q.y(), q.z()}) + "}" +
-           indent + "position_m: " + List({p.x(), p.y(), p.z()}) + "\n";
+    return indent + "unit: " + algo::ToString(camera.unit) +  //
+           CameraModelText(camera.model, indent) +            //
+           indent + "rotation: {quaternion_wxyz: " + ExactText({q.w(), q.x(), q.y(), q.z()}) + "}" +
+           indent + "position_m: " + ExactText({p.x(), p.y(), p.z()}) + "\n";
 }
 
 /// What the id stands for.
@@ -60,13 +41,6 @@ std::string Content(const RigCalibration& calibration) {
         text += "  " + name + ":" + CameraText(camera);
     }
     return text;
-}
-
-std::string WriteText(const std::string& text, const std::filesystem::path& file) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    stream.close();
-    return stream ? "" : file.string() + ": the file cannot be written";
 }
 
 }  // namespace
@@ -122,18 +96,10 @@ std::string ToYaml(const RigCalibration& calibration) {
 }
 
 std::string SaveCalibration(const RigCalibration& calibration, const std::filesystem::path& file) {
-    std::filesystem::path fresh = file;
-    fresh += ".new";
-    std::string problem = WriteText(ToYaml(calibration), fresh);
     // What could not be read back must not replace what can.
-    if (problem.empty()) problem = LoadCalibration(fresh).error;
-    std::error_code error;
-    if (problem.empty()) {
-        std::filesystem::rename(fresh, file, error);
-        if (error) problem = file.string() + ": the file cannot be replaced: " + error.message();
-    }
-    if (!problem.empty()) std::filesystem::remove(fresh, error);
-    return problem;
+    return ReplaceFile(file, ToYaml(calibration), [](const std::filesystem::path& fresh) {
+        return LoadCalibration(fresh).error;
+    });
 }
 
 }  // namespace hitchview::calib

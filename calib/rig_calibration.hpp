@@ -9,13 +9,9 @@
 
 #include "algo/camera_model.hpp"
 #include "algo/unit.hpp"
+#include "calib/verdict.hpp"
 
 namespace hitchview::calib {
-
-/// Whether the calibration may be driven with; the tool that measured it says so.
-enum class Verdict { kPass, kFail, kUnchecked };
-
-std::string_view ToString(Verdict verdict);
 
 /// Letters, digits and _, at least one.
 bool IsName(std::string_view name);

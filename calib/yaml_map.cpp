@@ -242,4 +242,12 @@ std::string ExactText(double number) {
     return {text.data(), written.ptr};
 }
 
+std::string ExactText(std::initializer_list<double> numbers) {
+    std::string text;
+    for (const double number : numbers) {
+        text.append(text.empty() ? "[" : ", ").append(ExactText(number));
+    }
+    return text + "]";
+}
+
 }  // namespace hitchview::calib

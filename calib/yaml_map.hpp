@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
@@ -141,6 +142,8 @@ YamlMap ParseYaml(const std::string& text, YamlComplaints& complaints);
 
 /// Shortest text that reads back as exactly `number`.
 std::string ExactText(double number);
+/// The same for a list: `[1, 2]`.
+std::string ExactText(std::initializer_list<double> numbers);
 
 template <typename E, std::size_t kCount>
 void YamlValue::Read(const std::array<Choice<E>, kCount>& choices, E& out) const {

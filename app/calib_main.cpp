@@ -1,0 +1,57 @@
+#include <CLI/CLI.hpp>
+#include <map>
+#include <string>
+
+#include "app/calib_intrinsics_verb.hpp"
+
+namespace {
+
+using namespace hitchview::app;
+using Kind = hitchview::algo::CameraModel::Kind;
+
+constexpr int kWrongUse = 2;
+
+std::string CommandLine(int argc, char** argv) {
+    std::string line = "hitchview-calib " HITCHVIEW_VERSION;
+    for (int i = 1; i < argc; ++i) line.append(" ").append(argv[i]);
+    return line;
+}
+
+CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
+    CLI::App& verb =
+        *app.add_subcommand("intrinsics",
+                            "Measure a lens from pictures of a chessboard, and judge the result.\n"
+                            "Exit code 0: it may be driven with, 1: not, and why.\n"
+                            "Example: hitchview-calib intrinsics --images 'front/*.jpg' --board "
+                            "9x6,0.025 --model fisheye "
+                            "--out front.yaml");
+    verb.add_option("--images", options.images, "pictures of one camera, a pattern in quotes")
+        ->required();
+    verb.add_option("--board", options.board,
+                    "COLSxROWS,SQUARE_M: inner corners, side of a square in metres")
+        ->required();
+    verb.add_option("--model", options.model, "pinhole, or fisheye for 120 degrees and more")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Kind>{
+            {"pinhole", Kind::kPinholeRadtan}, {"fisheye", Kind::kKannalaBrandt4}}))
+        ->required();
+    verb.add_option("--out", options.out, "lens file to write, with the verdict in it");
+    verb.add_option("--json", options.json, "file for all figures");
+    return verb;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Hitchview's field calibration: measure cameras and rig, and judge the result"};
+    app.set_version_flag("--version", HITCHVIEW_VERSION);
+    app.require_subcommand(1);
+    IntrinsicsOptions intrinsics;
+    AddIntrinsics(app, intrinsics);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : kWrongUse;
+    }
+    intrinsics.command = CommandLine(argc, argv);
+    return IntrinsicsVerb(intrinsics);
+}

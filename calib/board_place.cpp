@@ -1,0 +1,95 @@
+#include <cmath>
+#include <limits>
+#include <opencv2/calib3d.hpp>
+
+#include "calib/lens_solver.hpp"
+#include "calib/reprojection_error.hpp"
+
+namespace hitchview::calib {
+namespace {
+
+using algo::CameraModel;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+/// The directions that the corners lie in; empty if the lens has none for one of them.
+std::optional<std::vector<Vector3d>> Directions(const CameraModel& model, const Corners& corners) {
+    std::vector<Vector3d> directions;
+    for (const Eigen::Vector2d& corner : corners) {
+        const auto direction = model.Unproject(corner);
+        if (!direction) return std::nullopt;
+        directions.push_back(*direction);
+    }
+    return directions;
+}
+
+/// Rays on the plane in front of a camera that is turned to look at the middle of them; false where
+/// they spread over half a sphere.
+bool OnPlane(const std::vector<Vector3d>& directions, const Eigen::Quaterniond& q_turned_camera,
+             std::vector<cv::Point2d>& points) {
+    constexpr double kLeastDepth = 0.05;
+    for (const Vector3d& direction : directions) {
+        const Vector3d turned = q_turned_camera * direction;
+        if (turned.z() < kLeastDepth) return false;
+        points.emplace_back(turned.x() / turned.z(), turned.y() / turned.z());
+    }
+    return true;
+}
+
+}  // namespace
+
+std::optional<Isometry3d> RoughPlace(const CameraModel& model, std::span<const Vector3d> board_m,
+                                     const Corners& corners) {
+    const auto directions = Directions(model, corners);
+    if (!directions) return std::nullopt;
+    Vector3d middle = Vector3d::Zero();
+    for (const Vector3d& direction : *directions) middle += direction;
+    const auto q_turned_camera = Eigen::Quaterniond::FromTwoVectors(middle, Vector3d::UnitZ());
+    std::vector<cv::Point2d> seen;
+    if (!OnPlane(*directions, q_turned_camera, seen)) return std::nullopt;
+    std::vector<cv::Point3d> flat;
+    for (const Vector3d& corner : board_m) flat.emplace_back(corner.x(), corner.y(), 0);
+    cv::Vec3d rotation;
+    cv::Vec3d translation;
+    if (!cv::solvePnP(flat, seen, cv::Matx33d::eye(), cv::noArray(), rotation, translation, false,
+                      cv::SOLVEPNP_IPPE)) {
+        return std::nullopt;
+    }
+    const Vector3d axis(rotation[0], rotation[1], rotation[2]);
+    Isometry3d T_turned_board = Isometry3d::Identity();
+    T_turned_board.linear() = Rotation(axis);
+    T_turned_board.translation() = Vector3d(translation[0], translation[1], translation[2]);
+    return q_turned_camera.inverse() * T_turned_board;
+}
+
+std::optional<Isometry3d> SolvePlace(const CameraModel& model, std::span<const Vector3d> board_m,
+                                     const Corners& corners) {
+    const auto first = RoughPlace(model, board_m, corners);
+    if (!first) return std::nullopt;
+    PlaceParameters place = Parameters(*first);
+    LensParameters lens(model);
+    ceres::Problem problem;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        problem.AddResidualBlock(PlaceError::Create(lens, board_m[i], corners[i]), nullptr,
+                                 place.data());
+    }
+    ceres::Solver::Summary summary;
+    ceres::Solve(SolverSettings(), &problem, &summary);
+    if (!summary.IsSolutionUsable()) return std::nullopt;
+    return Place(place);
+}
+
+double SquaredErrors(const CameraModel& model, std::span<const Vector3d> board_m,
+                     const Isometry3d& T_camera_board, const Corners& corners) {
+    CameraModel everywhere = model;
+    everywhere.max_theta_rad = 3.14;
+    double sum = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const auto seen = everywhere.Project(T_camera_board * board_m[i]);
+        if (!seen) return std::numeric_limits<double>::infinity();
+        sum += (*seen - corners[i]).squaredNorm();
+    }
+    return sum;
+}
+
+}  // namespace hitchview::calib

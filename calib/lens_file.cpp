@@ -1,0 +1,81 @@
+#include "calib/lens_file.hpp"
+
+#include <yaml-cpp/emitter.h>
+
+#include <algorithm>
+
+#include "calib/camera_model_yaml.hpp"
+#include "calib/replace_file.hpp"
+#include "calib/yaml_map.hpp"
+
+namespace hitchview::calib {
+namespace {
+
+std::string Quoted(const std::string& text) {
+    YAML::Emitter emitter;
+    emitter << YAML::DoubleQuoted << text;
+    return emitter.c_str();
+}
+
+std::string Quality(const Intrinsics& lens) {
+    const auto used = std::ranges::count_if(lens.views, &ViewOutcome::used);
+    std::string text = "quality:\n  rms_px: " + ExactText(lens.rms_px);
+    if (lens.heldout_rms_px) text += "\n  heldout_rms_px: " + ExactText(*lens.heldout_rms_px);
+    text += "\n  views_used: " + std::to_string(used) +
+            "\n  views_found: " + std::to_string(lens.views.size()) +
+            "\n  board_bulge_m: " + ExactText(lens.bulge_m) + "\n  reasons: [";
+    for (std::size_t i = 0; i < lens.reasons.size(); ++i)
+        text += (i == 0 ? "" : ", ") + Quoted(lens.reasons[i]);
+    return text + "]\n";
+}
+
+std::string Sigma(const Intrinsics& lens) {
+    const std::vector<double>& s = lens.sigma;
+    if (s.empty()) return "";
+    std::string text = "sigma:\n  focal_px: " + ExactText({s[0], s[1]}) +
+                       "\n  centre_px: " + ExactText({s[2], s[3]}) + "\n  distortion: [";
+    for (std::size_t i = 4; i < s.size(); ++i) text += (i == 4 ? "" : ", ") + ExactText(s[i]);
+    return text + "]\n";
+}
+
+std::string LensText(const Intrinsics& lens, const std::string& written_by) {
+    return "schema: 1\nverdict: " + std::string(ToString(lens.verdict)) +
+           "\nwritten_by: " + Quoted(written_by) + CameraModelText(lens.model, "\n") + "\n" +
+           Quality(lens) + Sigma(lens);
+}
+
+/// For people only: whatever stands there is not looked at.
+void PassOver(YamlMap& root) {
+    (void)root["quality"];
+    (void)root["sigma"];
+}
+
+}  // namespace
+
+LoadedLens LoadLens(const std::filesystem::path& file) {
+    YamlComplaints complaints(file.string());
+    YamlMap root = LoadYaml(file, complaints);
+    LoadedLens loaded;
+    int schema = 1;
+    std::string written_by;
+    root.Required("schema").Read(Range<int>{1, 1}, schema);
+    ReadVerdict(root.Required("verdict"), loaded.verdict);
+    root.Required("written_by").Read(written_by);
+    const algo::CameraModel model = ReadCameraModel(root);
+    PassOver(root);
+    root.Finish();
+    if (complaints.empty()) {
+        loaded.model = model;
+    } else {
+        loaded.error = complaints.Text();
+    }
+    return loaded;
+}
+
+std::string SaveLens(const Intrinsics& intrinsics, const std::string& written_by,
+                     const std::filesystem::path& file) {
+    return ReplaceFile(file, LensText(intrinsics, written_by),
+                       [](const std::filesystem::path& fresh) { return LoadLens(fresh).error; });
+}
+
+}  // namespace hitchview::calib
