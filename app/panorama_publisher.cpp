@@ -71,7 +71,9 @@ void PanoramaPublisher::Work() {
         SendEvents();
         side_.SendPending();
     }
-    SendEvents();  // what happened while the last one was sent
+    // What came while the last one was sent.
+    SendHitchAngles();
+    SendEvents();
 }
 
 void PanoramaPublisher::Send(Filled& filled) {

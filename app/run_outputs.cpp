@@ -311,6 +311,7 @@ std::optional<RecordingSummary> RunOutputs::recording() const {
 
 hal::Checked<hal::Done> RunOutputs::Finish() {
     if (recorder_) recorder_->Stop("the program ends");
+    if (telemetry_) telemetry_->Settle();
     if (publisher_) publisher_->Finish();
     if (previews_) previews_->Finish();
     if (recorder_) recorder_->Finish();

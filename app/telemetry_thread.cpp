@@ -20,7 +20,8 @@ TelemetryThread::TelemetryThread(hal::CanBus& bus, const HitchAngleSignal& signa
     : bus_(bus),
       monitor_(signal),
       options_(options),
-      reached_ns_(options.paced ? Limits::min() : Limits::max()) {
+      reached_ns_(options.paced ? Limits::min() : Limits::max()),
+      held_ns_(Limits::min()) {
     HV_EXPECT(options.retry_after.count() > 0);
     thread_ = std::thread([this] { Work(); });
 }
@@ -60,7 +61,10 @@ void TelemetryThread::Work() {
             HandOver(frame.value());
             continue;
         }
-        if (frame.error() == hal::Error::kEndOfStream) return;
+        if (frame.error() == hal::Error::kEndOfStream) {
+            ended_ = true;
+            return;
+        }
         TellSilence();
         if (frame.error() != hal::Error::kTimeout) RestAfterFailure();
     }
@@ -83,11 +87,25 @@ void TelemetryThread::TellSilence() {
 }
 
 void TelemetryThread::HoldUntil(Instant received_at) {
+    held_ns_ = received_at.count();
     Instant::rep reached_ns = reached_ns_.load();
     while (reached_ns < received_at.count()) {
         reached_ns_.wait(reached_ns);
         reached_ns = reached_ns_.load();
     }
+    held_ns_ = Limits::min();
+}
+
+bool TelemetryThread::IsSettled() const {
+    return ended_ || held_ns_ > reached_ns_;
+}
+
+void TelemetryThread::Settle() const {
+    constexpr std::chrono::milliseconds kLongest{200};
+    constexpr std::chrono::milliseconds kPause{1};
+    if (!options_.paced) return;
+    for (auto waited = kPause; waited <= kLongest && !IsSettled(); waited += kPause)
+        std::this_thread::sleep_for(kPause);
 }
 
 void TelemetryThread::RestAfterFailure() {

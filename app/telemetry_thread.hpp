@@ -54,6 +54,10 @@ class TelemetryThread {
     /// paced.
     void Advance(hal::Instant captured);
 
+    /// Waits until what Advance let go of can be taken, at most 200 ms, so that the end of a run
+    /// lacks nothing. Without effect unless paced. Thread: Advance's.
+    void Settle() const;
+
     /// The next angle in the order of the bus; empty when there is none yet.
     std::optional<hal::HitchAngle> Take() { return angles_.Take(); }
 
@@ -67,6 +71,7 @@ class TelemetryThread {
     void HandOver(const std::optional<hal::HitchAngle>& maybe_angle);
     void TellSilence();
     void HoldUntil(hal::Instant received_at);
+    [[nodiscard]] bool IsSettled() const;
     void RestAfterFailure();
 
     hal::CanBus& bus_;
@@ -80,6 +85,9 @@ class TelemetryThread {
 
     std::atomic<hal::Instant::rep>
         reached_ns_;  // never steps back; the largest value when stopping
+    std::atomic<hal::Instant::rep>
+        held_ns_;  // moment of the angle held back; the least when none is
+    std::atomic<bool> ended_{false};
     std::atomic<bool> stop_{false};
     std::mutex rest_mutex_;  // with rested_: cuts a rest short, never held by Advance or Take
     std::condition_variable rested_;

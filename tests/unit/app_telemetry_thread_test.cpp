@@ -66,6 +66,18 @@ TEST(TelemetryThreadTest, ALiveBusIsHandedOverInOrderWithoutAdvance) {
     EXPECT_FALSE(telemetry.Take());
 }
 
+TEST(TelemetryThreadTest, WhatWasLetGoOfCanBeTakenWhenItHasSettled) {
+    for (const int last : {40, 99}) {  // in the middle of the recording and behind its end
+        hal::FakeCanBus bus(FramesUpTo(80));
+        TelemetryThread telemetry(bus, ByteSignal(), {});
+        telemetry.Advance(milliseconds(last));
+        telemetry.Settle();
+        int taken = 0;
+        while (telemetry.Take()) ++taken;
+        EXPECT_EQ(taken, std::min(last, 80) + 1);
+    }
+}
+
 TEST(TelemetryThreadTest, ARecordingIsHandedOverOnlyAsFarAsTheFrameSetsHaveCome) {
     hal::FakeCanBus bus(FramesUpTo(99));
     TelemetryThread telemetry(bus, ByteSignal(), {});
