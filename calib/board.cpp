@@ -29,6 +29,27 @@ bool IsSound(const Board& board) {
 
 }  // namespace
 
+Eigen::Vector3d Board::Corner(int index) const {
+    if (pattern != Pattern::kTags)
+        return {index % columns * square_m, index / columns * square_m, 0};
+    const int tag = index / 4;
+    const int corner = index % 4;
+    return {tag % columns * square_m + (corner == 1 || corner == 2 ? tag_m : 0),
+            tag / columns * square_m + (corner >= 2 ? tag_m : 0), 0};
+}
+
+int Board::tags() const {
+    switch (pattern) {
+        case Pattern::kCheckerboard:
+            return 0;
+        case Pattern::kCharuco:
+            return (columns + 1) * (rows + 1) / 2;
+        case Pattern::kTags:
+            return columns * rows;
+    }
+    return 0;
+}
+
 std::vector<Eigen::Vector3d> Board::Corners() const {
     std::vector<Eigen::Vector3d> corners;
     for (int i = 0; i < count(); ++i) corners.push_back(Corner(i));

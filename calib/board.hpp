@@ -8,19 +8,37 @@
 
 namespace hitchview::calib {
 
-/// A chessboard as it was meant to be printed. Board frame: origin in the first inner corner, x
-/// along its row, y along its column, z away from who looks at it.
-struct Board {
-    int columns = 0;      ///< inner corners in a row. [3, 50]
-    int rows = 0;         ///< inner corners in a column. [3, 50]
-    double square_m = 0;  ///< side of a square. [0.001, 2]
+/// What is printed on a board.
+enum class Pattern {
+    kCheckerboard,  ///< corners between squares; the whole board must be seen
+    /// The same with a tag in the middle of each white square: tells its corners apart, so a part
+    /// will do. The top left square is black.
+    kCharuco,
+    /// Tags in a grid, with a small square between the corners of four: a part will do, also far
+    /// away or aslant. The layout of kalibr's aprilgrid.
+    kTags,
+};
 
-    [[nodiscard]] int count() const { return columns * rows; }
-    /// Corner `index`, counted row by row.
-    [[nodiscard]] Eigen::Vector3d Corner(int index) const {
-        return {index % columns * square_m, index / columns * square_m, 0};
-    }
+/// A flat sheet as it was meant to be printed. Its tags are of the family tag36h11. Board frame:
+/// origin in the first corner, x along its row, y along its column, z away from who looks at it.
+struct Board {
+    int columns = 0;      ///< inner corners in a row, or tags. [3, 50], tags [1, 20]
+    int rows = 0;         ///< inner corners in a column, or tags. [3, 50], tags [1, 20]
+    double square_m = 0;  ///< side of a square; from tag to tag. [0.001, 2]
+    Pattern pattern = Pattern::kCheckerboard;
+    double tag_m = 0;   ///< side of a tag's black frame, less than square_m; 0 without tags
+    int first_tag = 0;  ///< number of the first tag; the others follow row by row
+
+    /// Corners that can be seen.
+    [[nodiscard]] int count() const { return columns * rows * (pattern == Pattern::kTags ? 4 : 1); }
+    /// Corner `index`, counted row by row. Those of tags: tag by tag, in each from its top left
+    /// clockwise.
+    [[nodiscard]] Eigen::Vector3d Corner(int index) const;
     [[nodiscard]] std::vector<Eigen::Vector3d> Corners() const;
+    /// Tags on it: `first_tag` and so many more.
+    [[nodiscard]] int tags() const;
+
+    friend bool operator==(const Board&, const Board&) = default;
 };
 
 /// A board, or what is wrong with its description.
@@ -29,8 +47,18 @@ struct ParsedBoard {
     std::string error{};
 };
 
-/// `COLSxROWS,SQUARE_M`: inner corners, and the side of a square in metres, as 9x6,0.025.
+/// `COLSxROWS,SQUARE_M`: a checkerboard by its inner corners and the side of a square in metres, as
+/// 9x6,0.025.
 ParsedBoard ParseBoard(std::string_view text);
+
+/// A corner of a board in a picture.
+struct SeenCorner {
+    int index = 0;  ///< of Board::Corner
+    Eigen::Vector2d at_px = Eigen::Vector2d::Zero();
+};
+
+/// Those of one board in one picture, by rising index.
+using SeenCorners = std::vector<SeenCorner>;
 
 /// One picture of a board.
 struct BoardView {
