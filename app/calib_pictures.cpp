@@ -82,7 +82,7 @@ hal::Checked<BoardPictures> FindBoards(const std::string& pattern, const calib::
         if (!looks[i].corners) continue;
         if (looks[i].larger_board) ++found.larger_boards;
         found.views.push_back(
-            {std::filesystem::path(files[i]).filename().string(), std::move(*looks[i].corners)});
+            {std::filesystem::path(files[i]).filename().string(), calib::AllCorners(*looks[i].corners)});
     }
     found.width_px = looks[0].size_px.width;
     found.height_px = looks[0].size_px.height;

@@ -63,10 +63,10 @@ std::optional<Candidate> Choose(const LensProblem& problem) {
 
 double Covered(const LensProblem& problem) {
     std::set<int> cells;
-    for (const Corners& view : problem.views) {
-        for (const Eigen::Vector2d& corner : view) {
-            const int column = static_cast<int>(corner.x() * kColumns / problem.width_px);
-            const int row = static_cast<int>(corner.y() * kRows / problem.height_px);
+    for (const SeenCorners& view : problem.views) {
+        for (const SeenCorner& corner : view) {
+            const int column = static_cast<int>(corner.at_px.x() * kColumns / problem.width_px);
+            const int row = static_cast<int>(corner.at_px.y() * kRows / problem.height_px);
             cells.insert(row * kColumns + column);
         }
     }
@@ -75,9 +75,10 @@ double Covered(const LensProblem& problem) {
 
 ViewSpread Spread(const LensProblem& problem, const LensSolution& solution) {
     ViewSpread spread{.covered = Covered(problem), .farthest = 1e9};
-    const Vector3d middle =
-        (problem.board.Corner(0) + problem.board.Corner(problem.board.count() - 1)) / 2;
-    const double width_m = (problem.board.columns - 1) * problem.board.square_m;
+    Vector3d end_m = Vector3d::Zero();
+    for (const Vector3d& corner : problem.board.Corners()) end_m = end_m.cwiseMax(corner);
+    const Vector3d middle = end_m / 2;
+    const double width_m = end_m.x();
     for (const Eigen::Isometry3d& T_camera_board : solution.T_camera_board) {
         const Vector3d p_camera = T_camera_board * middle;
         const double along = std::abs(p_camera.normalized().dot(T_camera_board.linear().col(2)));

@@ -32,6 +32,27 @@ TEST_P(LensTest, PicturesWithoutNoiseGiveTheLensBack) {
     EXPECT_NEAR(found->model.cy_px, truth.cy_px, 1e-3);
 }
 
+TEST_P(LensTest, PartsOfABoardWithTagsGiveTheLensBack) {
+    const CameraModel truth = GetParam();
+    const Board tags{.columns = 6,
+                     .rows = 4,
+                     .square_m = 0.08,
+                     .pattern = Pattern::kTags,
+                     .tag_m = 0.06,
+                     .first_tag = 0};
+    BoardViews views(truth, tags, 12);
+    views.ShowParts();
+    const LensProblem problem = views.Problem(15, 0);
+    const auto found = SolveLens(problem, {});
+
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(std::ranges::any_of(
+        problem.views, [&](const SeenCorners& view) { return std::ssize(view) < tags.count(); }));
+    EXPECT_LT(found->rms_px, 1e-4);
+    EXPECT_NEAR(found->model.fx_px, truth.fx_px, 1e-3);
+    EXPECT_NEAR(found->model.cx_px, truth.cx_px, 1e-3);
+}
+
 TEST_P(LensTest, NoiseOfThreeTenthsOfAPixelMovesFocalLengthAndCentreLittle) {
     const CameraModel truth = GetParam();
     const Board large{.columns = 14, .rows = 9, .square_m = 0.04};
@@ -96,14 +117,14 @@ INSTANTIATE_TEST_SUITE_P(Lenses, LensTest,
 
 struct OpenCvPoints {
     explicit OpenCvPoints(const LensProblem& problem) {
-        for (const Corners& view : problem.views) {
+        for (const SeenCorners& view : problem.views) {
             board.emplace_back();
             corners.emplace_back();
             for (int i = 0; i < problem.board.count(); ++i) {
                 const auto at = problem.board.Corner(i);
                 board.back().emplace_back(at.x(), at.y(), 0);
-                corners.back().emplace_back(view[static_cast<std::size_t>(i)].x(),
-                                            view[static_cast<std::size_t>(i)].y());
+                corners.back().emplace_back(view[static_cast<std::size_t>(i)].at_px.x(),
+                                            view[static_cast<std::size_t>(i)].at_px.y());
             }
         }
     }
@@ -147,8 +168,10 @@ TEST(LensOracleTest, ErrorsAreNotAboveThoseOfOpenCvsFisheyeForTheSameCorners) {
 }
 
 /// Corners in the order of a board that was turned by 180 degrees.
-Corners TurnedOver(const Corners& corners) {
-    return {corners.rbegin(), corners.rend()};
+SeenCorners TurnedOver(SeenCorners corners) {
+    std::ranges::reverse(corners);
+    for (int i = 0; i < std::ssize(corners); ++i) corners[static_cast<std::size_t>(i)].index = i;
+    return corners;
 }
 
 TEST(ViewSelectionTest, ABoardThatWasTurnedIsTurnedBack) {
@@ -171,7 +194,7 @@ TEST(ViewSelectionTest, ABoardThatWasTurnedIsTurnedBack) {
 TEST(ViewSelectionTest, AViewOfSomethingElseIsLeftOut) {
     LensProblem problem = BoardViews(tests::FisheyeLens(), kBoard, 7).Problem(15, kNoise_px);
     for (std::size_t i = 0; i < problem.views[4].size(); ++i)
-        problem.views[4][i].x() += i % 2 == 0 ? 6 : -6;
+        problem.views[4][i].at_px.x() += i % 2 == 0 ? 6 : -6;
     const auto robust = SolveLens(problem, {.robust = true});
 
     ASSERT_TRUE(robust);
