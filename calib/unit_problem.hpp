@@ -50,11 +50,20 @@ struct Sighting {
     SeenCorners corners{};
 };
 
+/// Something far away, at least 10 m, in pictures of two cameras of the same moment.
+struct FarMatch {
+    std::size_t first = 0;
+    std::size_t second = 0;
+    Eigen::Vector2d first_px = Eigen::Vector2d::Zero();
+    Eigen::Vector2d second_px = Eigen::Vector2d::Zero();
+};
+
 /// What is known of where the cameras of one unit stand. The vehicle did not move meanwhile.
 struct UnitProblem {
     std::vector<UnitCamera> cameras{};
     std::vector<UnitTarget> targets{};
     std::vector<Sighting> sightings{};
+    std::vector<FarMatch> far_matches{};
 };
 
 }  // namespace hitchview::calib

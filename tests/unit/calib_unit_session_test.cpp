@@ -99,8 +99,10 @@ TEST_F(UnitSessionTest, NamesEveryMistakeWithItsLine) {
 TEST_F(UnitSessionTest, NeedsACameraAndATarget) {
     const auto loaded = LoadUnitSession(folder_.Write(
         "empty.yaml", "schema: 1\nunit: tractor\nvehicle: x\ncameras: {}\ntargets: {}\n"));
-    EXPECT_THAT(loaded.error, HasSubstr("empty.yaml:4: cameras is a map, must be a map of at least one"));
-    EXPECT_THAT(loaded.error, HasSubstr("empty.yaml:5: targets is a map, must be a map of at least one"));
+    EXPECT_THAT(loaded.error,
+                HasSubstr("empty.yaml:4: cameras is a map, must be a map of at least one"));
+    EXPECT_THAT(loaded.error,
+                HasSubstr("empty.yaml:5: targets is a map, must be a map of at least one"));
 }
 
 }  // namespace
