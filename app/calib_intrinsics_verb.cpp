@@ -25,29 +25,37 @@ int Fail(int code, const std::string& why) {
     return code;
 }
 
-calib::LensProblem Problem(const IntrinsicsOptions& options, const calib::Board& board,
-                           const BoardPictures& pictures) {
-    calib::LensProblem problem{.kind = options.model,
-                               .width_px = pictures.width_px,
-                               .height_px = pictures.height_px,
-                               .board = board,
-                               .views = {}};
-    for (const calib::BoardView& view : pictures.views) problem.views.push_back(view.corners);
-    return problem;
+calib::LensPictures PicturesOf(const IntrinsicsOptions& options, const calib::Board& board,
+                               const BoardPictures& pictures) {
+    return {.kind = options.model,
+            .width_px = pictures.width_px,
+            .height_px = pictures.height_px,
+            .board = board,
+            .views = pictures.views};
 }
 
-std::vector<std::string> Names(const BoardPictures& pictures) {
-    std::vector<std::string> names;
-    for (const calib::BoardView& view : pictures.views) names.push_back(view.name);
-    return names;
+const char* Words(calib::ViewOutcome::Fate fate) {
+    switch (fate) {
+        case calib::ViewOutcome::Fate::kUsed:
+            return "used";
+        case calib::ViewOutcome::Fate::kFewCorners:
+            return "too little of the board is seen";
+        case calib::ViewOutcome::Fate::kSmeared:
+            return "smeared: it moved, or is out of focus";
+        case calib::ViewOutcome::Fate::kOutlier:
+            return "far worse than the others";
+    }
+    return "";
 }
 
 json ViewsJson(const calib::Intrinsics& lens) {
     json views = json::array();
     for (const calib::ViewOutcome& view : lens.views) {
         views.push_back({{"name", view.name},
-                         {"used", view.used},
-                         {"rms_px", view.used ? json(view.rms_px) : json(nullptr)}});
+                         {"used", view.is_used()},
+                         {"fate", Words(view.fate)},
+                         {"blur_px", view.blur_px ? json(*view.blur_px) : json(nullptr)},
+                         {"rms_px", view.is_used() ? json(view.rms_px) : json(nullptr)}});
     }
     return views;
 }
@@ -57,6 +65,14 @@ json UncertaintyJson(const calib::Intrinsics& lens) {
     for (const calib::PixelUncertainty& place : lens.uncertainty)
         places.push_back({place.at_px.x(), place.at_px.y(), place.sigma_px});
     return places;
+}
+
+json ResidualsJson(const calib::Intrinsics& lens) {
+    json residuals = json::array();
+    for (const calib::CornerResidual& r : lens.residuals) {
+        residuals.push_back({r.view, r.at_px.x(), r.at_px.y(), r.off_px.x(), r.off_px.y()});
+    }
+    return residuals;
 }
 
 json ModelJson(const calib::Intrinsics& lens) {
@@ -73,8 +89,9 @@ json ModelJson(const calib::Intrinsics& lens) {
 }
 
 json Report(const calib::Intrinsics& lens, const BoardPictures& pictures) {
-    const auto used = std::ranges::count_if(lens.views, &calib::ViewOutcome::used);
-    return {{"verdict", std::string(ToString(lens.verdict))},
+    const auto used = std::ranges::count_if(lens.views, &calib::ViewOutcome::is_used);
+    return {{"verb", "intrinsics"},
+            {"verdict", std::string(ToString(lens.verdict))},
             {"reasons", lens.reasons},
             {"rms_px", lens.rms_px},
             {"heldout_rms_px", lens.heldout_rms_px ? json(*lens.heldout_rms_px) : json(nullptr)},
@@ -85,6 +102,8 @@ json Report(const calib::Intrinsics& lens, const BoardPictures& pictures) {
             {"board",
              {{"shape", lens.shape == calib::BoardShape::kFlat ? "flat" : "measured"},
               {"bulge_m", lens.bulge_m}}},
+            {"residuals", ResidualsJson(lens)},
+            {"coverage", lens.spread.corners},
             {"covered", lens.spread.covered},
             {"most_tilt_rad", lens.spread.most_tilt_rad},
             {"lens", ModelJson(lens)},
@@ -106,12 +125,12 @@ void PrintLens(const calib::Intrinsics& lens) {
 }
 
 void Print(const calib::Intrinsics& lens, const BoardPictures& pictures) {
-    const auto used = std::ranges::count_if(lens.views, &calib::ViewOutcome::used);
+    const auto used = std::ranges::count_if(lens.views, &calib::ViewOutcome::is_used);
     std::printf("views   %zu pictures, board found in %zu, used %zd\n", pictures.pictures,
                 pictures.views.size(), used);
     for (const calib::ViewOutcome& view : lens.views) {
-        if (!view.used)
-            std::printf("        %s left out: far worse than the others\n", view.name.c_str());
+        if (!view.is_used())
+            std::printf("        %s left out: %s\n", view.name.c_str(), Words(view.fate));
     }
     std::printf("errors  %.3f px", lens.rms_px);
     if (lens.heldout_rms_px)
@@ -154,8 +173,7 @@ int IntrinsicsVerb(const IntrinsicsOptions& options) {
     const BoardPictures& pictures = found.value();
     if (const std::string why = Refusal(pictures, options); !why.empty())
         return Fail(kWrongUse, why);
-    const auto lens =
-        calib::MeasureIntrinsics(Problem(options, *board.board, pictures), Names(pictures));
+    const auto lens = calib::MeasureIntrinsics(PicturesOf(options, *board.board, pictures));
     if (!lens) return Fail(kBad, "no lens of this model explains the pictures");
     Print(*lens, pictures);
     if (const int failed = Save(*lens, pictures, options); failed != 0) return failed;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "calib/board_blur.hpp"
 #include "calib/board_extent.hpp"
 #include "calib/chessboard_detector.hpp"
 
@@ -28,17 +29,21 @@ std::vector<std::string> Files(const std::string& pattern) {
 
 /// What one picture shows.
 struct Look {
-    cv::Size size_px{};  ///< empty: it cannot be read
-    std::optional<std::vector<Eigen::Vector2d>> corners{};
+    cv::Size size_px{};            ///< empty: it cannot be read
+    calib::SeenCorners corners{};  ///< empty: no board
+    std::optional<double> blur_px{};
     bool larger_board = false;
 };
 
 Look LookAt(const std::string& file, const calib::Board& board) {
     const cv::Mat grey = cv::imread(file, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
     if (grey.empty()) return {};
-    auto corners = calib::DetectChessboard(grey, board);
-    const bool larger = corners && calib::GoesOnBeyond(grey, board, *corners);
-    return {grey.size(), std::move(corners), larger};
+    const auto corners = calib::DetectChessboard(grey, board);
+    if (!corners) return {.size_px = grey.size()};
+    Look look{.size_px = grey.size(), .corners = calib::AllCorners(*corners)};
+    look.larger_board = calib::GoesOnBeyond(grey, board, *corners);
+    look.blur_px = calib::BoardBlur_px(grey, board, look.corners);
+    return look;
 }
 
 void ShowProgress(std::size_t done, std::size_t all) {
@@ -79,10 +84,10 @@ hal::Checked<BoardPictures> FindBoards(const std::string& pattern, const calib::
         if (looks[i].size_px != looks[0].size_px)
             return files[i] + ": is " + Text(looks[i].size_px) + ", must be " +
                    Text(looks[0].size_px) + " as " + files[0];
-        if (!looks[i].corners) continue;
+        if (looks[i].corners.empty()) continue;
         if (looks[i].larger_board) ++found.larger_boards;
-        found.views.push_back(
-            {std::filesystem::path(files[i]).filename().string(), calib::AllCorners(*looks[i].corners)});
+        found.views.push_back({std::filesystem::path(files[i]).filename().string(),
+                               std::move(looks[i].corners), looks[i].blur_px});
     }
     found.width_px = looks[0].size_px.width;
     found.height_px = looks[0].size_px.height;
