@@ -46,11 +46,6 @@ Look LookAt(const std::string& file, const calib::Board& board) {
     return look;
 }
 
-void ShowProgress(std::size_t done, std::size_t all) {
-    if (isatty(STDERR_FILENO) == 0) return;
-    std::fprintf(stderr, "\rlooked at %zu of %zu pictures%s", done, all, done == all ? "\n" : "");
-}
-
 std::vector<Look> LookAtAll(const std::vector<std::string>& files, const calib::Board& board) {
     std::vector<Look> looks(files.size());
     std::atomic<std::size_t> next{0};
@@ -58,7 +53,7 @@ std::vector<Look> LookAtAll(const std::vector<std::string>& files, const calib::
     const auto work = [&] {
         for (std::size_t i = next++; i < files.size(); i = next++) {
             looks[i] = LookAt(files[i], board);
-            ShowProgress(++done, files.size());
+            ShowProgress("looked at", ++done, files.size(), "pictures");
         }
     };
     std::vector<std::jthread> threads;
@@ -73,6 +68,11 @@ std::string Text(const cv::Size& size_px) {
 }
 
 }  // namespace
+
+void ShowProgress(const char* what, std::size_t done, std::size_t all, const char* of_what) {
+    if (isatty(STDERR_FILENO) == 0) return;
+    std::fprintf(stderr, "\r%s %zu of %zu %s%s", what, done, all, of_what, done == all ? "\n" : "");
+}
 
 hal::Checked<BoardPictures> FindBoards(const std::string& pattern, const calib::Board& board) {
     const std::vector<std::string> files = Files(pattern);
