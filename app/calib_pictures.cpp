@@ -13,7 +13,7 @@
 
 #include "calib/board_blur.hpp"
 #include "calib/board_extent.hpp"
-#include "calib/chessboard_detector.hpp"
+#include "calib/board_detector.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -38,10 +38,11 @@ struct Look {
 Look LookAt(const std::string& file, const calib::Board& board) {
     const cv::Mat grey = cv::imread(file, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
     if (grey.empty()) return {};
-    const auto corners = calib::DetectChessboard(grey, board);
-    if (!corners) return {.size_px = grey.size()};
-    Look look{.size_px = grey.size(), .corners = calib::AllCorners(*corners)};
-    look.larger_board = calib::GoesOnBeyond(grey, board, *corners);
+    Look look{.size_px = grey.size(),
+              .corners = std::move(calib::DetectBoards(grey, {&board, 1}).front())};
+    if (look.corners.empty()) return look;
+    look.larger_board = board.pattern == calib::Pattern::kCheckerboard &&
+                        calib::GoesOnBeyond(grey, board, look.corners);
     look.blur_px = calib::BoardBlur_px(grey, board, look.corners);
     return look;
 }
