@@ -38,7 +38,8 @@ TEST(PanoramaHolesTest, OneCameraCoversWhatItsLensCovers) {
     RigCalibration rig = SimulatedRig();
     std::erase_if(rig.cameras, [](const auto& camera) { return camera.first != "front"; });
     rig.cameras.at("front").q_unit_camera = RotationFromRpy({0, 0, 0});
-    const auto holes = FindHoles(rig, kCanvas, {});
+    const algo::AlignmentSurface far_away{.radius_m = 1e5, .viewpoint_m = 1, .ground_m = -1e5};
+    const auto holes = FindHoles(rig, kCanvas, far_away);
     ASSERT_EQ(holes.size(), 1);
     // 120 of 360 degrees are covered.
     EXPECT_NEAR(holes[0].gap_at_horizon_px, 720 * 2 / 3, 4);
