@@ -40,6 +40,8 @@ CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
     verb.add_option(
         "--out", options.out,
         "lens file to write, with the verdict in it; with --folder the folder of the files");
+    verb.add_flag("--keep-failed", options.keeps_failed,
+                  "write the lens file also when the verdict is fail");
     verb.add_option("--json", options.json, "file for all figures");
     return verb;
 }

@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "calib/board_blur.hpp"
-#include "calib/board_extent.hpp"
 #include "calib/board_detector.hpp"
+#include "calib/board_extent.hpp"
 
 namespace hitchview::app {
 namespace {
