@@ -26,8 +26,11 @@ CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
                             "Example: hitchview-calib intrinsics --images 'front/*.jpg' --board "
                             "9x6,0.025 --model fisheye "
                             "--out front.yaml");
-    verb.add_option("--images", options.images, "pictures of one camera, a pattern in quotes")
-        ->required();
+    auto* const source = verb.add_option_group("pictures");
+    source->add_option("--images", options.images, "pictures of one camera, a pattern in quotes");
+    source->add_option("--folder", options.folder,
+                       "a folder of pictures for each camera, named as the camera is");
+    source->require_option(1);
     verb.add_option("--board", options.board,
                     "COLSxROWS,SQUARE_M: inner corners, side of a square in metres")
         ->required();
@@ -35,7 +38,9 @@ CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
         ->transform(CLI::CheckedTransformer(std::map<std::string, Kind>{
             {"pinhole", Kind::kPinholeRadtan}, {"fisheye", Kind::kKannalaBrandt4}}))
         ->required();
-    verb.add_option("--out", options.out, "lens file to write, with the verdict in it");
+    verb.add_option(
+        "--out", options.out,
+        "lens file to write, with the verdict in it; with --folder the folder of the files");
     verb.add_option("--json", options.json, "file for all figures");
     return verb;
 }

@@ -1,6 +1,7 @@
 #include "calib/board.hpp"
 
 #include <charconv>
+#include <iterator>
 
 namespace hitchview::calib {
 namespace {
@@ -53,6 +54,13 @@ int Board::tags() const {
 std::vector<Eigen::Vector3d> Board::Corners() const {
     std::vector<Eigen::Vector3d> corners;
     for (int i = 0; i < count(); ++i) corners.push_back(Corner(i));
+    return corners;
+}
+
+SeenCorners AllCorners(const std::vector<Eigen::Vector2d>& at_px) {
+    SeenCorners corners;
+    for (int i = 0; i < std::ssize(at_px); ++i)
+        corners.push_back({i, at_px[static_cast<std::size_t>(i)]});
     return corners;
 }
 

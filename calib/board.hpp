@@ -55,15 +55,21 @@ ParsedBoard ParseBoard(std::string_view text);
 struct SeenCorner {
     int index = 0;  ///< of Board::Corner
     Eigen::Vector2d at_px = Eigen::Vector2d::Zero();
+
+    friend bool operator==(const SeenCorner&, const SeenCorner&) = default;
 };
 
 /// Those of one board in one picture, by rising index.
 using SeenCorners = std::vector<SeenCorner>;
 
+/// Those of a board that is seen as a whole. `at_px`: one for each corner, in their order.
+SeenCorners AllCorners(const std::vector<Eigen::Vector2d>& at_px);
+
 /// One picture of a board.
 struct BoardView {
-    std::string name{};                      ///< of the picture
-    std::vector<Eigen::Vector2d> corners{};  ///< px, row by row; as many as the board has
+    std::string name{};  ///< of the picture
+    SeenCorners corners{};
+    std::optional<double> blur_px{};  ///< see BoardBlur_px
 };
 
 }  // namespace hitchview::calib

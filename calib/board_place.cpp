@@ -13,10 +13,11 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 /// The directions that the corners lie in; empty if the lens has none for one of them.
-std::optional<std::vector<Vector3d>> Directions(const CameraModel& model, const Corners& corners) {
+std::optional<std::vector<Vector3d>> Directions(const CameraModel& model,
+                                                const SeenCorners& corners) {
     std::vector<Vector3d> directions;
-    for (const Eigen::Vector2d& corner : corners) {
-        const auto direction = model.Unproject(corner);
+    for (const SeenCorner& corner : corners) {
+        const auto direction = model.Unproject(corner.at_px);
         if (!direction) return std::nullopt;
         directions.push_back(*direction);
     }
@@ -39,7 +40,7 @@ bool OnPlane(const std::vector<Vector3d>& directions, const Eigen::Quaterniond& 
 }  // namespace
 
 std::optional<Isometry3d> RoughPlace(const CameraModel& model, std::span<const Vector3d> board_m,
-                                     const Corners& corners) {
+                                     const SeenCorners& corners) {
     const auto directions = Directions(model, corners);
     if (!directions) return std::nullopt;
     Vector3d middle = Vector3d::Zero();
@@ -48,7 +49,10 @@ std::optional<Isometry3d> RoughPlace(const CameraModel& model, std::span<const V
     std::vector<cv::Point2d> seen;
     if (!OnPlane(*directions, q_turned_camera, seen)) return std::nullopt;
     std::vector<cv::Point3d> flat;
-    for (const Vector3d& corner : board_m) flat.emplace_back(corner.x(), corner.y(), 0);
+    for (const SeenCorner& corner : corners) {
+        const Vector3d& at_m = board_m[static_cast<std::size_t>(corner.index)];
+        flat.emplace_back(at_m.x(), at_m.y(), 0);
+    }
     cv::Vec3d rotation;
     cv::Vec3d translation;
     if (!cv::solvePnP(flat, seen, cv::Matx33d::eye(), cv::noArray(), rotation, translation, false,
@@ -63,14 +67,15 @@ std::optional<Isometry3d> RoughPlace(const CameraModel& model, std::span<const V
 }
 
 std::optional<Isometry3d> SolvePlace(const CameraModel& model, std::span<const Vector3d> board_m,
-                                     const Corners& corners) {
+                                     const SeenCorners& corners) {
     const auto first = RoughPlace(model, board_m, corners);
     if (!first) return std::nullopt;
     PlaceParameters place = Parameters(*first);
     LensParameters lens(model);
     ceres::Problem problem;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        problem.AddResidualBlock(PlaceError::Create(lens, board_m[i], corners[i]), nullptr,
+    for (const SeenCorner& corner : corners) {
+        const Vector3d& at_m = board_m[static_cast<std::size_t>(corner.index)];
+        problem.AddResidualBlock(PlaceError::Create(lens, at_m, corner.at_px), nullptr,
                                  place.data());
     }
     ceres::Solver::Summary summary;
@@ -80,14 +85,15 @@ std::optional<Isometry3d> SolvePlace(const CameraModel& model, std::span<const V
 }
 
 double SquaredErrors(const CameraModel& model, std::span<const Vector3d> board_m,
-                     const Isometry3d& T_camera_board, const Corners& corners) {
+                     const Isometry3d& T_camera_board, const SeenCorners& corners) {
     CameraModel everywhere = model;
     everywhere.max_theta_rad = 3.14;
     double sum = 0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const auto seen = everywhere.Project(T_camera_board * board_m[i]);
-        if (!seen) return std::numeric_limits<double>::infinity();
-        sum += (*seen - corners[i]).squaredNorm();
+    for (const SeenCorner& corner : corners) {
+        const Vector3d& at_m = board_m[static_cast<std::size_t>(corner.index)];
+        const auto expected = everywhere.Project(T_camera_board * at_m);
+        if (!expected) return std::numeric_limits<double>::infinity();
+        sum += (*expected - corner.at_px).squaredNorm();
     }
     return sum;
 }

@@ -12,7 +12,7 @@ constexpr std::size_t kFewestViews = 3;
 
 struct Split {
     LensProblem kept;
-    std::vector<Corners> left_out;
+    std::vector<SeenCorners> left_out;
 };
 
 Split LeaveOut(const LensProblem& problem, const std::vector<int>& numbers, int folds, int fold) {
@@ -26,9 +26,9 @@ Split LeaveOut(const LensProblem& problem, const std::vector<int>& numbers, int 
 }
 
 /// Empty where the lens has no place for one of the views.
-std::optional<double> Errors(const LensSolution& solution, const std::vector<Corners>& views) {
+std::optional<double> Errors(const LensSolution& solution, const std::vector<SeenCorners>& views) {
     double sum = 0;
-    for (const Corners& corners : views) {
+    for (const SeenCorners& corners : views) {
         const auto place = SolvePlace(solution.model, solution.board_m, corners);
         if (!place) return std::nullopt;
         sum += SquaredErrors(solution.model, solution.board_m, *place, corners);
@@ -53,7 +53,7 @@ std::optional<double> HeldOutRms(const LensProblem& problem, const LensSolution&
         sum += *errors;
     }
     if (parts == 0) return std::nullopt;
-    return std::sqrt(sum / (problem.board.count() * static_cast<double>(problem.views.size())));
+    return std::sqrt(sum / static_cast<double>(CornerCount(problem.views)));
 }
 
 }  // namespace hitchview::calib

@@ -154,7 +154,7 @@ void CheckSize(const YamlValue& value, const ImportHints& hints, const CameraMod
 
 void CompleteField(const YamlValue& distortion, CameraModel& model) {
     if (!(model.fx_px > 0) || model.width_px == 0) return;
-    model.max_theta_rad = WidestField(model);
+    model.max_theta_rad = FieldOf(model);
     if (model.max_theta_rad < kNarrowestField_rad)
         distortion.Refuse("a distortion that grows from the centre on");
 }

@@ -4,9 +4,9 @@
 
 namespace hitchview::calib {
 
-/// Largest angle from the optical axis, rad, up to which the distortion grows in every direction
-/// and beyond which the picture sees nothing: what `max_theta_rad` of a lens is that comes without
-/// one. `model.max_theta_rad` is not looked at. 0: the distortion grows nowhere.
-double WidestField(const algo::CameraModel& model);
+/// Angle from the optical axis of the farthest ray that has a pixel in the picture and an inverse,
+/// rad: what CameraModel::max_theta_rad should be. The lens's own is not looked at. 0: its
+/// distortion has no inverse anywhere.
+double FieldOf(const algo::CameraModel& lens);
 
 }  // namespace hitchview::calib

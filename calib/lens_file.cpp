@@ -18,7 +18,7 @@ std::string Quoted(const std::string& text) {
 }
 
 std::string Quality(const Intrinsics& lens) {
-    const auto used = std::ranges::count_if(lens.views, &ViewOutcome::used);
+    const auto used = std::ranges::count_if(lens.views, &ViewOutcome::is_used);
     std::string text = "quality:\n  rms_px: " + ExactText(lens.rms_px);
     if (lens.heldout_rms_px) text += "\n  heldout_rms_px: " + ExactText(*lens.heldout_rms_px);
     text += "\n  views_used: " + std::to_string(used) +

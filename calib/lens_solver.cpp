@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "calib/reprojection_error.hpp"
 
@@ -47,7 +48,7 @@ template <typename FindPlace>
 double FitPlaces(const LensProblem& problem, const FindPlace& find_place, State& state) {
     double sum = 0;
     state.places.clear();
-    for (const Corners& corners : problem.views) {
+    for (const SeenCorners& corners : problem.views) {
         const auto place = find_place(state.model, state.board_m, corners);
         if (!place) return std::numeric_limits<double>::infinity();
         sum += SquaredErrors(state.model, state.board_m, *place, corners);
@@ -112,20 +113,21 @@ class Adjustment {
     static constexpr int kLargestDense = 200;
 
     void AddView(std::size_t view, const LensSolverOptions& options) {
-        for (std::size_t i = 0; i < state_.board_m.size(); ++i) {
-            const Eigen::Vector2d& seen = problem_.views[view][i];
-            ceres::CostFunction* const error = problem_.kind == CameraModel::Kind::kPinholeRadtan
-                                                   ? CornerError::Create<5>(problem_.kind, seen)
-                                                   : CornerError::Create<4>(problem_.kind, seen);
-            all_.AddResidualBlock(error,
-                                  options.robust ? new ceres::CauchyLoss(kOrdinaryError) : nullptr,
-                                  lens_.focal_and_centre.data(), lens_.distortion.data(),
-                                  state_.places[view].data(), state_.board_m[i].data());
+        for (const SeenCorner& corner : problem_.views[view]) {
+            ceres::CostFunction* const error =
+                problem_.kind == CameraModel::Kind::kPinholeRadtan
+                    ? CornerError::Create<5>(problem_.kind, corner.at_px)
+                    : CornerError::Create<4>(problem_.kind, corner.at_px);
+            all_.AddResidualBlock(
+                error, options.robust ? new ceres::CauchyLoss(kOrdinaryError) : nullptr,
+                lens_.focal_and_centre.data(), lens_.distortion.data(), state_.places[view].data(),
+                state_.board_m[static_cast<std::size_t>(corner.index)].data());
         }
     }
 
     void AddCorner(std::size_t index, BoardShape shape) {
         double* const corner = state_.board_m[index].data();
+        if (!all_.HasParameterBlock(corner)) return;
         if (shape == BoardShape::kFlat) {
             all_.SetParameterBlockConstant(corner);
             return;
@@ -158,26 +160,33 @@ bool Adjust(const LensProblem& problem, const LensSolverOptions& options, State&
 
 void Measure(const LensProblem& problem, const State& state, LensSolution& solution) {
     double sum = 0;
-    const auto count = static_cast<double>(problem.board.count());
     for (std::size_t view = 0; view < problem.views.size(); ++view) {
         solution.T_camera_board.push_back(Place(state.places[view]));
         const double errors = SquaredErrors(state.model, state.board_m,
                                             solution.T_camera_board.back(), problem.views[view]);
-        solution.view_rms_px.push_back(std::sqrt(errors / count));
+        solution.view_rms_px.push_back(
+            std::sqrt(errors / static_cast<double>(problem.views[view].size())));
         sum += errors;
     }
-    solution.rms_px = std::sqrt(sum / (count * static_cast<double>(problem.views.size())));
+    solution.rms_px = std::sqrt(sum / static_cast<double>(CornerCount(problem.views)));
+}
+
+/// Corners of the board that are seen in some view.
+int DistinctCorners(const std::vector<SeenCorners>& views) {
+    std::set<int> seen;
+    for (const SeenCorners& view : views)
+        for (const SeenCorner& corner : view) seen.insert(corner.index);
+    return static_cast<int>(seen.size());
 }
 
 /// Of one coordinate of a corner, after what the parameters took up.
 double ErrorVariance(const LensProblem& problem, const LensSolverOptions& options, double rms_px) {
-    const auto corners = static_cast<double>(problem.board.count());
+    const auto corners = static_cast<double>(CornerCount(problem.views));
     const auto views = static_cast<double>(problem.views.size());
-    const double shape = options.shape == BoardShape::kMeasured ? 3 * corners - 6 : 0;
-    const double known = 2 * corners * views;
-    const double free = known - 6 * views - 4 - DistortionCount(problem.kind) - shape;
-    return free > 0 ? rms_px * rms_px * corners * views / free
-                    : std::numeric_limits<double>::infinity();
+    const double shape =
+        options.shape == BoardShape::kMeasured ? 3.0 * DistinctCorners(problem.views) - 6 : 0;
+    const double free = 2 * corners - 6 * views - 4 - DistortionCount(problem.kind) - shape;
+    return free > 0 ? rms_px * rms_px * corners / free : std::numeric_limits<double>::infinity();
 }
 
 std::optional<LensSolution> Finish(const LensProblem& problem, const LensSolverOptions& options,
@@ -196,6 +205,12 @@ std::optional<LensSolution> Finish(const LensProblem& problem, const LensSolverO
 }
 
 }  // namespace
+
+std::size_t CornerCount(const std::vector<SeenCorners>& views) {
+    std::size_t count = 0;
+    for (const SeenCorners& view : views) count += view.size();
+    return count;
+}
 
 std::optional<LensSolution> SolveLens(const LensProblem& problem,
                                       const LensSolverOptions& options) {

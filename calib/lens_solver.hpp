@@ -11,15 +11,13 @@
 
 namespace hitchview::calib {
 
-using Corners = std::vector<Eigen::Vector2d>;
-
-/// Pictures of one board by one lens. Views with fewer corners than the board do not exist.
+/// Pictures of one board by one lens. A view has at least six corners, not all in one line.
 struct LensProblem {
     algo::CameraModel::Kind kind = algo::CameraModel::Kind::kKannalaBrandt4;
     int width_px = 0;
     int height_px = 0;
     Board board;
-    std::vector<Corners> views;
+    std::vector<SeenCorners> views;
 };
 
 /// Focal lengths, centre, and distortion in the order of CameraModel.
@@ -61,19 +59,22 @@ std::optional<LensSolution> SolveLens(const LensProblem& problem, const LensSolv
 std::optional<LensSolution> SolveLensFrom(const LensSolution& start, const LensProblem& problem,
                                           const LensSolverOptions& options);
 
+/// Corners in all views.
+[[nodiscard]] std::size_t CornerCount(const std::vector<SeenCorners>& views);
+
 /// Place of a board that a roughly known lens sees, from a homography: without regard to the
 /// board's shape. Empty: too far from the axis, or degenerate.
 std::optional<Eigen::Isometry3d> RoughPlace(const algo::CameraModel& model,
                                             std::span<const Eigen::Vector3d> board_m,
-                                            const Corners& corners);
+                                            const SeenCorners& corners);
 
 /// Place of a board that a known lens sees. Empty: too far from the axis, or degenerate.
 std::optional<Eigen::Isometry3d> SolvePlace(const algo::CameraModel& model,
                                             std::span<const Eigen::Vector3d> board_m,
-                                            const Corners& corners);
+                                            const SeenCorners& corners);
 
 /// Sum of the squared distances between the corners and where the model shows the board's, px^2.
 double SquaredErrors(const algo::CameraModel& model, std::span<const Eigen::Vector3d> board_m,
-                     const Eigen::Isometry3d& T_camera_board, const Corners& corners);
+                     const Eigen::Isometry3d& T_camera_board, const SeenCorners& corners);
 
 }  // namespace hitchview::calib

@@ -9,16 +9,16 @@
 namespace hitchview::calib {
 namespace {
 
-double ErrorsWhenTurned(const LensSolution& solution, const Corners& corners) {
+double ErrorsWhenTurned(const LensSolution& solution, const SeenCorners& corners) {
     const auto place = SolvePlace(solution.model, solution.board_m, corners);
     return place ? SquaredErrors(solution.model, solution.board_m, *place, corners)
                  : std::numeric_limits<double>::infinity();
 }
 
-Corners Turned(const Corners& corners, const std::vector<int>& turn) {
-    Corners turned;
-    for (const int index : turn) turned.push_back(corners[static_cast<std::size_t>(index)]);
-    return turned;
+SeenCorners Turned(const SeenCorners& corners, const std::vector<int>& turn) {
+    std::vector<Eigen::Vector2d> turned;
+    for (const int index : turn) turned.push_back(corners[static_cast<std::size_t>(index)].at_px);
+    return AllCorners(turned);
 }
 
 double Median(std::vector<double> values) {
@@ -27,24 +27,25 @@ double Median(std::vector<double> values) {
     return *middle;
 }
 
-bool IsSamePicture(const Corners& a, const Corners& b) {
+bool IsSamePicture(const SeenCorners& a, const SeenCorners& b) {
     constexpr double kSame = 1e-3;  // px
-    double farthest = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) farthest = std::max(farthest, (a[i] - b[i]).norm());
-    return farthest < kSame;
+    return std::ranges::equal(a, b, [](const SeenCorner& one, const SeenCorner& other) {
+        return one.index == other.index && (one.at_px - other.at_px).norm() < kSame;
+    });
 }
 
 }  // namespace
 
 bool TurnViewsAlike(const LensSolution& solution, LensProblem& problem) {
     constexpr double kClearly = 0.7;  // of the squared errors
+    if (problem.board.pattern != Pattern::kCheckerboard) return false;
     const auto turns = GridTurns(problem.board);
     bool changed = false;
-    for (Corners& view : problem.views) {
+    for (SeenCorners& view : problem.views) {
         double least = kClearly * ErrorsWhenTurned(solution, view);
-        Corners best;
+        SeenCorners best;
         for (std::size_t i = 1; i < turns.size(); ++i) {
-            Corners turned = Turned(view, turns[i]);
+            SeenCorners turned = Turned(view, turns[i]);
             const double errors = ErrorsWhenTurned(solution, turned);
             if (errors >= least) continue;
             least = errors;

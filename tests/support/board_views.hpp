@@ -38,7 +38,11 @@ inline algo::CameraModel PinholeLens() {
 class BoardViews {
  public:
     BoardViews(const algo::CameraModel& lens, const calib::Board& board, unsigned seed)
-        : lens_(lens), board_m_(board.Corners()), board_(board), random_(seed) {}
+        : lens_(lens),
+          board_m_(board.Corners()),
+          board_(board),
+          fewest_corners_(board.count()),
+          random_(seed) {}
 
     /// From now on the paper is like this.
     void Bulge(double depth_m) {
@@ -49,6 +53,8 @@ class BoardViews {
         }
     }
     void SetMostTilt(double tilt_rad) { most_tilt_rad_ = tilt_rad; }
+    /// Boards may reach beyond the picture, as those with tags.
+    void ShowParts() { fewest_corners_ = board_.count() / 3; }
 
     [[nodiscard]] const std::vector<Eigen::Vector3d>& board_m() const { return board_m_; }
 
@@ -65,18 +71,19 @@ class BoardViews {
     }
 
  private:
-    /// Empty where the board does not lie in the picture as a whole.
-    std::optional<calib::Corners> View(double noise_px) {
+    /// Empty where too little of the board lies in the picture.
+    std::optional<calib::SeenCorners> View(double noise_px) {
         const Eigen::Isometry3d T_camera_board = Place();
         std::normal_distribution<double> noise(0, noise_px);
-        calib::Corners corners;
-        for (const Eigen::Vector3d& corner : board_m_) {
-            const auto at = lens_.Project(T_camera_board * corner);
+        calib::SeenCorners corners;
+        for (int i = 0; i < board_.count(); ++i) {
+            const auto at = lens_.Project(T_camera_board * board_m_[static_cast<std::size_t>(i)]);
             if (!at || at->x() < 0 || at->y() < 0 || at->x() >= lens_.width_px ||
                 at->y() >= lens_.height_px)
-                return std::nullopt;
-            corners.emplace_back(at->x() + noise(random_), at->y() + noise(random_));
+                continue;
+            corners.push_back({i, {at->x() + noise(random_), at->y() + noise(random_)}});
         }
+        if (std::ssize(corners) < fewest_corners_) return std::nullopt;
         return corners;
     }
 
@@ -99,6 +106,7 @@ class BoardViews {
     algo::CameraModel lens_;
     std::vector<Eigen::Vector3d> board_m_;
     calib::Board board_;
+    int fewest_corners_;
     std::mt19937 random_;
     double most_tilt_rad_ = 0.8;
 };

@@ -35,7 +35,7 @@ class FormatSamples {
             lens.distortion = {Between(-0.03, 0.03), Between(-0.005, 0.005), Between(-1e-3, 1e-3),
                                Between(-1e-4, 1e-4)};
         }
-        lens.max_theta_rad = calib::WidestField(lens);
+        lens.max_theta_rad = calib::FieldOf(lens);
         return lens;
     }
 

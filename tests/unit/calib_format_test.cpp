@@ -55,7 +55,7 @@ TEST_F(FormatTest, LensesComeBackBitForBit) {
                 CameraModel lens = samples.Lens(kind);
                 if (format == Format::kKalibr && kind == Kind::kPinholeRadtan) {
                     lens.distortion[4] = 0;
-                    lens.max_theta_rad = WidestField(lens);
+                    lens.max_theta_rad = FieldOf(lens);
                 }
                 const ExportedFiles exported = ExportLens(format, "front", lens);
                 if (format == Format::kMrcal && kind == Kind::kKannalaBrandt4) {
@@ -142,7 +142,7 @@ TEST_F(FormatTest, ARigComesBackFromTheFormatsThatHavePlaces) {
         RigCalibration rig = FormatSamples(seed).Rig(Kind::kPinholeRadtan);
         for (auto& [name, camera] : rig.cameras) {
             camera.model.distortion[4] = 0;
-            camera.model.max_theta_rad = WidestField(camera.model);
+            camera.model.max_theta_rad = FieldOf(camera.model);
         }
         for (const Format format : {Format::kKalibr, Format::kMrcal}) {
             std::vector<UnitCameras> files;

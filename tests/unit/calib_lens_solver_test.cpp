@@ -32,6 +32,27 @@ TEST_P(LensTest, PicturesWithoutNoiseGiveTheLensBack) {
     EXPECT_NEAR(found->model.cy_px, truth.cy_px, 1e-3);
 }
 
+TEST_P(LensTest, PartsOfABoardWithTagsGiveTheLensBack) {
+    const CameraModel truth = GetParam();
+    const Board tags{.columns = 6,
+                     .rows = 4,
+                     .square_m = 0.08,
+                     .pattern = Pattern::kTags,
+                     .tag_m = 0.06,
+                     .first_tag = 0};
+    BoardViews views(truth, tags, 12);
+    views.ShowParts();
+    const LensProblem problem = views.Problem(15, 0);
+    const auto found = SolveLens(problem, {});
+
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(std::ranges::any_of(
+        problem.views, [&](const SeenCorners& view) { return std::ssize(view) < tags.count(); }));
+    EXPECT_LT(found->rms_px, 1e-4);
+    EXPECT_NEAR(found->model.fx_px, truth.fx_px, 1e-3);
+    EXPECT_NEAR(found->model.cx_px, truth.cx_px, 1e-3);
+}
+
 TEST_P(LensTest, NoiseOfThreeTenthsOfAPixelMovesFocalLengthAndCentreLittle) {
     const CameraModel truth = GetParam();
     const Board large{.columns = 14, .rows = 9, .square_m = 0.04};
@@ -96,14 +117,14 @@ INSTANTIATE_TEST_SUITE_P(Lenses, LensTest,
 
 struct OpenCvPoints {
     explicit OpenCvPoints(const LensProblem& problem) {
-        for (const Corners& view : problem.views) {
+        for (const SeenCorners& view : problem.views) {
             board.emplace_back();
             corners.emplace_back();
             for (int i = 0; i < problem.board.count(); ++i) {
                 const auto at = problem.board.Corner(i);
                 board.back().emplace_back(at.x(), at.y(), 0);
-                corners.back().emplace_back(view[static_cast<std::size_t>(i)].x(),
-                                            view[static_cast<std::size_t>(i)].y());
+                corners.back().emplace_back(view[static_cast<std::size_t>(i)].at_px.x(),
+                                            view[static_cast<std::size_t>(i)].at_px.y());
             }
         }
     }
@@ -147,8 +168,10 @@ TEST(LensOracleTest, ErrorsAreNotAboveThoseOfOpenCvsFisheyeForTheSameCorners) {
 }
 
 /// Corners in the order of a board that was turned by 180 degrees.
-Corners TurnedOver(const Corners& corners) {
-    return {corners.rbegin(), corners.rend()};
+SeenCorners TurnedOver(SeenCorners corners) {
+    std::ranges::reverse(corners);
+    for (int i = 0; i < std::ssize(corners); ++i) corners[static_cast<std::size_t>(i)].index = i;
+    return corners;
 }
 
 TEST(ViewSelectionTest, ABoardThatWasTurnedIsTurnedBack) {
@@ -171,7 +194,7 @@ TEST(ViewSelectionTest, ABoardThatWasTurnedIsTurnedBack) {
 TEST(ViewSelectionTest, AViewOfSomethingElseIsLeftOut) {
     LensProblem problem = BoardViews(tests::FisheyeLens(), kBoard, 7).Problem(15, kNoise_px);
     for (std::size_t i = 0; i < problem.views[4].size(); ++i)
-        problem.views[4][i].x() += i % 2 == 0 ? 6 : -6;
+        problem.views[4][i].at_px.x() += i % 2 == 0 ? 6 : -6;
     const auto robust = SolveLens(problem, {.robust = true});
 
     ASSERT_TRUE(robust);
@@ -185,8 +208,11 @@ TEST(ViewSelectionTest, PicturesThatAreOneGetOneNumber) {
     EXPECT_EQ(DistinctViews(problem), (std::vector<int>{0, 1, 2, 1}));
 }
 
-std::vector<std::string> Names(const LensProblem& problem) {
-    return std::vector<std::string>(problem.views.size(), "view");
+LensPictures PicturesOf(const LensProblem& problem) {
+    LensPictures pictures{problem.kind, problem.width_px, problem.height_px, problem.board, {}};
+    for (const SeenCorners& corners : problem.views)
+        pictures.views.push_back({.name = "view", .corners = corners, .blur_px = 0.6});
+    return pictures;
 }
 
 bool Says(const Intrinsics& lens, const std::string& what) {
@@ -196,7 +222,7 @@ bool Says(const Intrinsics& lens, const std::string& what) {
 
 TEST(IntrinsicsTest, GoodViewsPass) {
     const LensProblem problem = BoardViews(tests::FisheyeLens(), kBoard, 9).Problem(25, kNoise_px);
-    const auto lens = MeasureIntrinsics(problem, Names(problem));
+    const auto lens = MeasureIntrinsics(PicturesOf(problem));
 
     ASSERT_TRUE(lens);
     EXPECT_EQ(lens->verdict, Verdict::kPass) << (lens->reasons.empty() ? "" : lens->reasons[0]);
@@ -205,9 +231,33 @@ TEST(IntrinsicsTest, GoodViewsPass) {
     EXPECT_NEAR(*lens->heldout_rms_px, std::sqrt(2.0) * kNoise_px, 0.05);
 }
 
+TEST(IntrinsicsTest, ASmearedViewAndOneWithFewCornersAreLeftOut) {
+    const LensProblem problem = BoardViews(tests::FisheyeLens(), kBoard, 9).Problem(15, kNoise_px);
+    LensPictures pictures = PicturesOf(problem);
+    pictures.views[3].blur_px = 1.9;
+    pictures.views[8].corners.resize(9);  // one row
+    const auto lens = MeasureIntrinsics(pictures);
+
+    ASSERT_TRUE(lens);
+    EXPECT_EQ(lens->views[3].fate, ViewOutcome::Fate::kSmeared);
+    EXPECT_EQ(lens->views[8].fate, ViewOutcome::Fate::kFewCorners);
+    EXPECT_EQ(std::ranges::count_if(lens->views, &ViewOutcome::is_used), 13);
+}
+
+TEST(IntrinsicsTest, ACameraOutOfFocusFails) {
+    const LensProblem problem = BoardViews(tests::FisheyeLens(), kBoard, 9).Problem(15, kNoise_px);
+    LensPictures pictures = PicturesOf(problem);
+    for (BoardView& view : pictures.views) view.blur_px = 2.6;
+    const auto lens = MeasureIntrinsics(pictures);
+
+    ASSERT_TRUE(lens);
+    EXPECT_EQ(lens->verdict, Verdict::kFail);
+    EXPECT_TRUE(Says(*lens, "smeared over 2.6 px"));
+}
+
 TEST(IntrinsicsTest, FewViewsFail) {
     const LensProblem problem = BoardViews(tests::FisheyeLens(), kBoard, 10).Problem(4, kNoise_px);
-    const auto lens = MeasureIntrinsics(problem, Names(problem));
+    const auto lens = MeasureIntrinsics(PicturesOf(problem));
 
     ASSERT_TRUE(lens);
     EXPECT_EQ(lens->verdict, Verdict::kFail);
@@ -218,7 +268,7 @@ TEST(IntrinsicsTest, BoardsThatAllFaceThePinholeCameraFail) {
     BoardViews views(tests::PinholeLens(), kBoard, 11);
     views.SetMostTilt(0.02);
     const LensProblem problem = views.Problem(15, kNoise_px);
-    const auto lens = MeasureIntrinsics(problem, Names(problem));
+    const auto lens = MeasureIntrinsics(PicturesOf(problem));
 
     ASSERT_TRUE(lens);
     EXPECT_EQ(lens->verdict, Verdict::kFail);
