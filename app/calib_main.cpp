@@ -2,6 +2,7 @@
 #include <map>
 #include <string>
 
+#include "app/calib_formats_arguments.hpp"
 #include "app/calib_intrinsics_verb.hpp"
 
 namespace {
@@ -54,11 +55,17 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     IntrinsicsOptions intrinsics;
     AddIntrinsics(app, intrinsics);
+    CalibImportOptions imported;
+    const CLI::App& import_verb = AddCalibImport(app, imported);
+    CalibExportOptions exported;
+    const CLI::App& export_verb = AddCalibExport(app, exported);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : kWrongUse;
     }
-    intrinsics.command = CommandLine(argc, argv);
+    intrinsics.command = imported.command = CommandLine(argc, argv);
+    if (import_verb.parsed()) return CalibImportVerb(imported);
+    if (export_verb.parsed()) return CalibExportVerb(exported);
     return IntrinsicsVerb(intrinsics);
 }

@@ -2,28 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace hitchview::calib {
 namespace {
 
 using algo::CameraModel;
 
+/// Where the picture of a ray stands, in focal lengths from the centre.
+double Radius(const CameraModel& lens, double theta, double azimuth) {
+    const auto at =
+        lens.Project({std::sin(theta) * std::cos(azimuth), std::sin(theta) * std::sin(azimuth),
+                      std::cos(theta)});
+    return std::hypot((at->x() - lens.cx_px) / lens.fx_px, (at->y() - lens.cy_px) / lens.fy_px);
+}
+
 /// The polynomial may turn back between the last corner seen and the corner of the picture.
-double GrowsUpTo(const CameraModel& model) {
-    constexpr double kStep = 0.005;
-    const double most = model.kind == CameraModel::Kind::kPinholeRadtan ? 1.5 : 3.1;
-    CameraModel everywhere = model;
+double GrowsUpTo(const CameraModel& lens, double azimuth) {
+    constexpr double kStep = 0.002;
+    const double most = lens.kind == CameraModel::Kind::kPinholeRadtan ? 1.5 : 3.1;
+    const double picture =
+        std::hypot(lens.width_px, lens.height_px) / std::min(lens.fx_px, lens.fy_px);
+    CameraModel everywhere = lens;
     everywhere.max_theta_rad = 3.14;
-    double last = -1;
-    double theta = 0;
-    for (; theta < most; theta += kStep) {
-        const auto at = everywhere.Project({std::sin(theta), 0, std::cos(theta)});
-        const double radius = (at->x() - model.cx_px) / model.fx_px;
-        if (!(radius > last)) break;
+    double last = 0;
+    for (double theta = kStep; theta < most; theta += kStep) {
+        const double radius = Radius(everywhere, theta, azimuth);
+        if (!(radius > last)) return std::max(0.0, theta - 2 * kStep);
+        if (radius > picture) return theta;
         last = radius;
-        if (std::abs(radius) * model.fx_px > std::hypot(model.width_px, model.height_px)) break;
     }
-    return std::max(0.05, theta - 2 * kStep);
+    return most;
+}
+
+double GrowsUpTo(const CameraModel& lens) {
+    constexpr int kSides = 16;
+    double theta = std::numbers::pi;
+    for (int side = 0; side < kSides; ++side)
+        theta = std::min(theta, GrowsUpTo(lens, side * 2 * std::numbers::pi / kSides));
+    return theta;
 }
 
 }  // namespace
