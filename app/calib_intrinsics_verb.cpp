@@ -1,125 +1,68 @@
 #include "app/calib_intrinsics_verb.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <numbers>
+#include <thread>
+#include <vector>
 
+#include "app/calib_intrinsics_report.hpp"
 #include "app/calib_pictures.hpp"
 #include "app/report.hpp"
 #include "calib/intrinsics.hpp"
 #include "calib/lens_file.hpp"
+#include "calib/rig_calibration.hpp"
 
 namespace hitchview::app {
 namespace {
 
 using nlohmann::json;
+using std::filesystem::path;
 
+constexpr int kGood = 0;
 constexpr int kBad = 1;
 constexpr int kWrongUse = 2;
 constexpr int kMachineFailed = 3;
 constexpr std::size_t kFewestViews = 3;
+
+/// One lens to measure.
+struct Camera {
+    std::string name{};    ///< empty: the only one
+    std::string images{};  ///< pattern
+    path out{};
+    BoardPictures pictures{};
+    std::optional<calib::Intrinsics> lens{};
+    std::string problem{};  ///< why there is no lens; empty: there is, or nothing was tried yet
+    int code = kGood;
+};
 
 int Fail(int code, const std::string& why) {
     std::fprintf(stderr, "%s\n", why.c_str());
     return code;
 }
 
-calib::LensProblem Problem(const IntrinsicsOptions& options, const calib::Board& board,
-                           const BoardPictures& pictures) {
-    calib::LensProblem problem{.kind = options.model,
-                               .width_px = pictures.width_px,
-                               .height_px = pictures.height_px,
-                               .board = board,
-                               .views = {}};
-    for (const calib::BoardView& view : pictures.views) problem.views.push_back(view.corners);
-    return problem;
-}
-
-std::vector<std::string> Names(const BoardPictures& pictures) {
-    std::vector<std::string> names;
-    for (const calib::BoardView& view : pictures.views) names.push_back(view.name);
-    return names;
-}
-
-json ViewsJson(const calib::Intrinsics& lens) {
-    json views = json::array();
-    for (const calib::ViewOutcome& view : lens.views) {
-        views.push_back({{"name", view.name},
-                         {"used", view.used},
-                         {"rms_px", view.used ? json(view.rms_px) : json(nullptr)}});
+hal::Checked<std::vector<Camera>> CamerasOf(const IntrinsicsOptions& options) {
+    std::vector<Camera> cameras;
+    if (options.folder.empty()) {
+        cameras.push_back({.images = options.images, .out = options.out});
+        return cameras;
     }
-    return views;
-}
-
-json UncertaintyJson(const calib::Intrinsics& lens) {
-    json places = json::array();
-    for (const calib::PixelUncertainty& place : lens.uncertainty)
-        places.push_back({place.at_px.x(), place.at_px.y(), place.sigma_px});
-    return places;
-}
-
-json ModelJson(const calib::Intrinsics& lens) {
-    const algo::CameraModel& m = lens.model;
-    const bool pinhole = m.kind == algo::CameraModel::Kind::kPinholeRadtan;
-    return {{"model", std::string(ToString(m.kind))},
-            {"size_px", {m.width_px, m.height_px}},
-            {"focal_px", {m.fx_px, m.fy_px}},
-            {"centre_px", {m.cx_px, m.cy_px}},
-            {"distortion",
-             std::vector<double>(m.distortion.begin(), m.distortion.begin() + (pinhole ? 5 : 4))},
-            {"max_theta_rad", m.max_theta_rad},
-            {"sigma", lens.sigma}};
-}
-
-json Report(const calib::Intrinsics& lens, const BoardPictures& pictures) {
-    const auto used = std::ranges::count_if(lens.views, &calib::ViewOutcome::used);
-    return {{"verdict", std::string(ToString(lens.verdict))},
-            {"reasons", lens.reasons},
-            {"rms_px", lens.rms_px},
-            {"heldout_rms_px", lens.heldout_rms_px ? json(*lens.heldout_rms_px) : json(nullptr)},
-            {"pictures", pictures.pictures},
-            {"views_found", pictures.views.size()},
-            {"views_used", used},
-            {"views", ViewsJson(lens)},
-            {"board",
-             {{"shape", lens.shape == calib::BoardShape::kFlat ? "flat" : "measured"},
-              {"bulge_m", lens.bulge_m}}},
-            {"covered", lens.spread.covered},
-            {"most_tilt_rad", lens.spread.most_tilt_rad},
-            {"lens", ModelJson(lens)},
-            {"uncertainty", UncertaintyJson(lens)}};
-}
-
-void PrintLens(const calib::Intrinsics& lens) {
-    const algo::CameraModel& m = lens.model;
-    const auto plus_minus = [&](std::size_t i) {
-        return i < lens.sigma.size() ? 2 * lens.sigma[i] : 0.0;
-    };
-    std::printf("focal   %.2f +- %.2f, %.2f +- %.2f px\n", m.fx_px, plus_minus(0), m.fy_px,
-                plus_minus(1));
-    std::printf("centre  %.2f +- %.2f, %.2f +- %.2f px\n", m.cx_px, plus_minus(2), m.cy_px,
-                plus_minus(3));
-    std::printf("field   %.1f degrees from the axis\n", m.max_theta_rad * 180 / std::numbers::pi);
-    if (lens.shape == calib::BoardShape::kMeasured)
-        std::printf("board   not flat, measured: up to %.1f mm\n", 1000 * lens.bulge_m);
-}
-
-void Print(const calib::Intrinsics& lens, const BoardPictures& pictures) {
-    const auto used = std::ranges::count_if(lens.views, &calib::ViewOutcome::used);
-    std::printf("views   %zu pictures, board found in %zu, used %zd\n", pictures.pictures,
-                pictures.views.size(), used);
-    for (const calib::ViewOutcome& view : lens.views) {
-        if (!view.used)
-            std::printf("        %s left out: far worse than the others\n", view.name.c_str());
+    std::error_code refused;
+    for (const auto& entry : std::filesystem::directory_iterator(options.folder, refused)) {
+        const std::string name = entry.path().filename().string();
+        if (!entry.is_directory() || !calib::IsName(name)) continue;
+        cameras.push_back({.name = name,
+                           .images = (entry.path() / "*").string(),
+                           .out = options.out.empty() ? path() : options.out / (name + ".yaml")});
     }
-    std::printf("errors  %.3f px", lens.rms_px);
-    if (lens.heldout_rms_px)
-        std::printf(", %.3f px in views that were left out", *lens.heldout_rms_px);
-    std::printf("\n");
-    PrintLens(lens);
-    std::printf("verdict: %s\n", std::string(ToString(lens.verdict)).c_str());
-    for (const std::string& reason : lens.reasons) std::printf("  %s\n", reason.c_str());
+    if (refused) return options.folder.string() + ": cannot be read: " + refused.message();
+    if (cameras.empty())
+        return options.folder.string() +
+               ": has no folder that is named as a camera (letters, "
+               "digits, _)";
+    std::ranges::sort(cameras, {}, &Camera::name);
+    return cameras;
 }
 
 /// Why there is nothing to solve; empty if there is.
@@ -135,13 +78,72 @@ std::string Refusal(const BoardPictures& pictures, const IntrinsicsOptions& opti
            " are needed: count the corners between four squares, and let the whole board be seen";
 }
 
-int Save(const calib::Intrinsics& lens, const BoardPictures& pictures,
-         const IntrinsicsOptions& options) {
-    std::string problem;
-    if (!options.json.empty()) problem = WriteJson(Report(lens, pictures), options.json);
-    if (problem.empty() && !options.out.empty())
-        problem = calib::SaveLens(lens, options.command, options.out);
-    return problem.empty() ? 0 : Fail(kMachineFailed, problem);
+void FindIn(const IntrinsicsOptions& options, const calib::Board& board, Camera& camera) {
+    const auto found = FindBoards(camera.images, board);
+    if (found) camera.pictures = found.value();
+    camera.problem = found ? Refusal(camera.pictures, options) : found.error();
+    if (!camera.problem.empty()) camera.code = kWrongUse;
+}
+
+void Measure(const IntrinsicsOptions& options, const calib::Board& board, Camera& camera) {
+    if (!camera.problem.empty()) return;
+    camera.lens = calib::MeasureIntrinsics({.kind = options.model,
+                                            .width_px = camera.pictures.width_px,
+                                            .height_px = camera.pictures.height_px,
+                                            .board = board,
+                                            .views = camera.pictures.views});
+    if (!camera.lens) camera.problem = "no lens of this model explains the pictures";
+    const bool passed = camera.lens && camera.lens->verdict == calib::Verdict::kPass;
+    camera.code = passed ? kGood : kBad;
+}
+
+/// On all processors, one camera each.
+void MeasureAll(const IntrinsicsOptions& options, const calib::Board& board,
+                std::vector<Camera>& cameras) {
+    std::atomic<std::size_t> next{0};
+    std::atomic<std::size_t> done{0};
+    const auto work = [&] {
+        for (std::size_t i = next++; i < cameras.size(); i = next++) {
+            Measure(options, board, cameras[i]);
+            ShowProgress("measured", ++done, cameras.size(), "lenses");
+        }
+    };
+    std::vector<std::jthread> threads;
+    const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+    for (unsigned i = 0; i < processors && i < cameras.size(); ++i) threads.emplace_back(work);
+}
+
+json AllFigures(const std::vector<Camera>& cameras) {
+    if (cameras.size() == 1 && cameras[0].name.empty())
+        return IntrinsicsJson(*cameras[0].lens, cameras[0].pictures);
+    json all = json::object();
+    for (const Camera& camera : cameras) {
+        all[camera.name] = camera.lens ? IntrinsicsJson(*camera.lens, camera.pictures)
+                                       : json{{"verdict", "fail"}, {"reasons", {camera.problem}}};
+    }
+    return {{"verb", "intrinsics"}, {"cameras", all}};
+}
+
+void Tell(const Camera& camera) {
+    if (!camera.name.empty()) std::printf("%s\n", camera.name.c_str());
+    if (camera.lens) PrintIntrinsics(*camera.lens, camera.pictures);
+    if (camera.problem.empty()) return;
+    const std::string whose = camera.name.empty() ? "" : camera.name + ": ";
+    Fail(camera.code, whose + camera.problem);
+}
+
+std::string Save(const IntrinsicsOptions& options, const std::vector<Camera>& cameras) {
+    std::error_code refused;
+    if (!options.folder.empty() && !options.out.empty())
+        std::filesystem::create_directories(options.out, refused);
+    if (refused) return options.out.string() + ": cannot be made: " + refused.message();
+    for (const Camera& camera : cameras) {
+        if (!camera.lens || camera.out.empty()) continue;
+        if (camera.lens->verdict == calib::Verdict::kFail && !options.keeps_failed) continue;
+        const std::string problem = calib::SaveLens(*camera.lens, options.command, camera.out);
+        if (!problem.empty()) return problem;
+    }
+    return options.json.empty() ? "" : WriteJson(AllFigures(cameras), options.json);
 }
 
 }  // namespace
@@ -149,17 +151,17 @@ int Save(const calib::Intrinsics& lens, const BoardPictures& pictures,
 int IntrinsicsVerb(const IntrinsicsOptions& options) {
     const calib::ParsedBoard board = calib::ParseBoard(options.board);
     if (!board.board) return Fail(kWrongUse, board.error);
-    const auto found = FindBoards(options.images, *board.board);
+    auto found = CamerasOf(options);
     if (!found) return Fail(kWrongUse, found.error());
-    const BoardPictures& pictures = found.value();
-    if (const std::string why = Refusal(pictures, options); !why.empty())
-        return Fail(kWrongUse, why);
-    const auto lens =
-        calib::MeasureIntrinsics(Problem(options, *board.board, pictures), Names(pictures));
-    if (!lens) return Fail(kBad, "no lens of this model explains the pictures");
-    Print(*lens, pictures);
-    if (const int failed = Save(*lens, pictures, options); failed != 0) return failed;
-    return lens->verdict == calib::Verdict::kPass ? 0 : kBad;
+    std::vector<Camera>& cameras = found.value();
+    for (Camera& camera : cameras) FindIn(options, *board.board, camera);
+    MeasureAll(options, *board.board, cameras);
+    for (const Camera& camera : cameras) Tell(camera);
+    const bool has_one =
+        std::ranges::any_of(cameras, [](const Camera& c) { return c.lens.has_value(); });
+    const std::string problem = has_one ? Save(options, cameras) : "";
+    if (!problem.empty()) return Fail(kMachineFailed, problem);
+    return std::ranges::max(cameras, {}, &Camera::code).code;
 }
 
 }  // namespace hitchview::app

@@ -2,6 +2,7 @@
 #include <map>
 #include <string>
 
+#include "app/calib_formats_arguments.hpp"
 #include "app/calib_intrinsics_verb.hpp"
 
 namespace {
@@ -25,8 +26,11 @@ CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
                             "Example: hitchview-calib intrinsics --images 'front/*.jpg' --board "
                             "9x6,0.025 --model fisheye "
                             "--out front.yaml");
-    verb.add_option("--images", options.images, "pictures of one camera, a pattern in quotes")
-        ->required();
+    auto* const source = verb.add_option_group("pictures");
+    source->add_option("--images", options.images, "pictures of one camera, a pattern in quotes");
+    source->add_option("--folder", options.folder,
+                       "a folder of pictures for each camera, named as the camera is");
+    source->require_option(1);
     verb.add_option("--board", options.board,
                     "COLSxROWS,SQUARE_M: inner corners, side of a square in metres")
         ->required();
@@ -34,7 +38,11 @@ CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
         ->transform(CLI::CheckedTransformer(std::map<std::string, Kind>{
             {"pinhole", Kind::kPinholeRadtan}, {"fisheye", Kind::kKannalaBrandt4}}))
         ->required();
-    verb.add_option("--out", options.out, "lens file to write, with the verdict in it");
+    verb.add_option(
+        "--out", options.out,
+        "lens file to write, with the verdict in it; with --folder the folder of the files");
+    verb.add_flag("--keep-failed", options.keeps_failed,
+                  "write the lens file also when the verdict is fail");
     verb.add_option("--json", options.json, "file for all figures");
     return verb;
 }
@@ -47,11 +55,17 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     IntrinsicsOptions intrinsics;
     AddIntrinsics(app, intrinsics);
+    CalibImportOptions imported;
+    const CLI::App& import_verb = AddCalibImport(app, imported);
+    CalibExportOptions exported;
+    const CLI::App& export_verb = AddCalibExport(app, exported);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : kWrongUse;
     }
-    intrinsics.command = CommandLine(argc, argv);
+    intrinsics.command = imported.command = CommandLine(argc, argv);
+    if (import_verb.parsed()) return CalibImportVerb(imported);
+    if (export_verb.parsed()) return CalibExportVerb(exported);
     return IntrinsicsVerb(intrinsics);
 }

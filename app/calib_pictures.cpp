@@ -11,8 +11,9 @@
 #include <optional>
 #include <thread>
 
+#include "calib/board_blur.hpp"
+#include "calib/board_detector.hpp"
 #include "calib/board_extent.hpp"
-#include "calib/chessboard_detector.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -28,22 +29,22 @@ std::vector<std::string> Files(const std::string& pattern) {
 
 /// What one picture shows.
 struct Look {
-    cv::Size size_px{};  ///< empty: it cannot be read
-    std::optional<std::vector<Eigen::Vector2d>> corners{};
+    cv::Size size_px{};            ///< empty: it cannot be read
+    calib::SeenCorners corners{};  ///< empty: no board
+    std::optional<double> blur_px{};
     bool larger_board = false;
 };
 
 Look LookAt(const std::string& file, const calib::Board& board) {
     const cv::Mat grey = cv::imread(file, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
     if (grey.empty()) return {};
-    auto corners = calib::DetectChessboard(grey, board);
-    const bool larger = corners && calib::GoesOnBeyond(grey, board, *corners);
-    return {grey.size(), std::move(corners), larger};
-}
-
-void ShowProgress(std::size_t done, std::size_t all) {
-    if (isatty(STDERR_FILENO) == 0) return;
-    std::fprintf(stderr, "\rlooked at %zu of %zu pictures%s", done, all, done == all ? "\n" : "");
+    Look look{.size_px = grey.size(),
+              .corners = std::move(calib::DetectBoards(grey, {&board, 1}).front())};
+    if (look.corners.empty()) return look;
+    look.larger_board = board.pattern == calib::Pattern::kCheckerboard &&
+                        calib::GoesOnBeyond(grey, board, look.corners);
+    look.blur_px = calib::BoardBlur_px(grey, board, look.corners);
+    return look;
 }
 
 std::vector<Look> LookAtAll(const std::vector<std::string>& files, const calib::Board& board) {
@@ -53,7 +54,7 @@ std::vector<Look> LookAtAll(const std::vector<std::string>& files, const calib::
     const auto work = [&] {
         for (std::size_t i = next++; i < files.size(); i = next++) {
             looks[i] = LookAt(files[i], board);
-            ShowProgress(++done, files.size());
+            ShowProgress("looked at", ++done, files.size(), "pictures");
         }
     };
     std::vector<std::jthread> threads;
@@ -69,6 +70,11 @@ std::string Text(const cv::Size& size_px) {
 
 }  // namespace
 
+void ShowProgress(const char* what, std::size_t done, std::size_t all, const char* of_what) {
+    if (isatty(STDERR_FILENO) == 0) return;
+    std::fprintf(stderr, "\r%s %zu of %zu %s%s", what, done, all, of_what, done == all ? "\n" : "");
+}
+
 hal::Checked<BoardPictures> FindBoards(const std::string& pattern, const calib::Board& board) {
     const std::vector<std::string> files = Files(pattern);
     if (files.empty()) return "no file is named " + pattern;
@@ -79,10 +85,10 @@ hal::Checked<BoardPictures> FindBoards(const std::string& pattern, const calib::
         if (looks[i].size_px != looks[0].size_px)
             return files[i] + ": is " + Text(looks[i].size_px) + ", must be " +
                    Text(looks[0].size_px) + " as " + files[0];
-        if (!looks[i].corners) continue;
+        if (looks[i].corners.empty()) continue;
         if (looks[i].larger_board) ++found.larger_boards;
-        found.views.push_back(
-            {std::filesystem::path(files[i]).filename().string(), calib::AllCorners(*looks[i].corners)});
+        found.views.push_back({std::filesystem::path(files[i]).filename().string(),
+                               std::move(looks[i].corners), looks[i].blur_px});
     }
     found.width_px = looks[0].size_px.width;
     found.height_px = looks[0].size_px.height;

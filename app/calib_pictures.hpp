@@ -17,6 +17,9 @@ struct BoardPictures {
     std::size_t larger_boards = 0;  ///< of these, those whose board goes on beyond its corners
 };
 
+/// Where a person sits before it: one line on stderr that says how far it is.
+void ShowProgress(const char* what, std::size_t done, std::size_t all, const char* of_what);
+
 /// Looks for the board in every picture that `pattern` (of the shell) names, on all processors, and
 /// shows on stderr how far it is. The error names the pattern that fits no file, the picture that
 /// cannot be read, or the two whose sizes differ.

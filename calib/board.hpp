@@ -69,6 +69,7 @@ SeenCorners AllCorners(const std::vector<Eigen::Vector2d>& at_px);
 struct BoardView {
     std::string name{};  ///< of the picture
     SeenCorners corners{};
+    std::optional<double> blur_px{};  ///< see BoardBlur_px
 };
 
 }  // namespace hitchview::calib

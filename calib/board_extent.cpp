@@ -42,9 +42,9 @@ struct Side {
     std::array<std::vector<Vector2d>, 3> lines;
 };
 
-std::array<Side, 4> Sides(const Board& board, const std::vector<Vector2d>& corners) {
+std::array<Side, 4> Sides(const Board& board, const SeenCorners& corners) {
     const auto at = [&](int column, int row) {
-        return corners[static_cast<std::size_t>(row * board.columns + column)];
+        return corners[static_cast<std::size_t>(row * board.columns + column)].at_px;
     };
     std::array<Side, 4> sides;
     for (int depth = 0; depth < 3; ++depth) {
@@ -88,7 +88,7 @@ bool GoesOnAt(const cv::Mat& grey, const Side& side) {
 
 }  // namespace
 
-bool GoesOnBeyond(const cv::Mat& grey, const Board& board, const std::vector<Vector2d>& corners) {
+bool GoesOnBeyond(const cv::Mat& grey, const Board& board, const SeenCorners& corners) {
     return std::ranges::any_of(Sides(board, corners),
                                [&](const Side& side) { return GoesOnAt(grey, side); });
 }

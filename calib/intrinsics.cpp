@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "calib/cross_validation.hpp"
+#include "calib/lens_field.hpp"
+#include "calib/usable_views.hpp"
 #include "calib/view_selection.hpp"
 
 namespace hitchview::calib {
@@ -14,8 +15,8 @@ using algo::CameraModel;
 using Eigen::Vector3d;
 
 constexpr int kFolds = 10;
-constexpr int kColumns = 8;
-constexpr int kRows = 5;
+constexpr int kColumns = ViewSpread::kColumns;
+constexpr int kRows = ViewSpread::kRows;
 
 void TurnAlike(LensProblem& problem) {
     constexpr int kMostRounds = 4;
@@ -27,10 +28,11 @@ void TurnAlike(LensProblem& problem) {
 
 /// Takes the outliers out of the problem; `used` keeps the places of the others.
 void LeaveOutliersOut(const LensSolution& robust, LensProblem& problem,
-                      std::vector<std::size_t>& used) {
+                      std::vector<std::size_t>& used, std::vector<ViewOutcome>& outcomes) {
     std::vector<std::size_t> outliers = OutlierViews(robust);
     std::ranges::sort(outliers, std::greater{});
     for (const std::size_t i : outliers) {
+        outcomes[used[i]].fate = ViewOutcome::Fate::kOutlier;
         problem.views.erase(problem.views.begin() + static_cast<std::ptrdiff_t>(i));
         used.erase(used.begin() + static_cast<std::ptrdiff_t>(i));
     }
@@ -61,20 +63,24 @@ std::optional<Candidate> Choose(const LensProblem& problem) {
     return bulged ? std::move(measured) : std::move(flat);
 }
 
-double Covered(const LensProblem& problem) {
-    std::set<int> cells;
+void CountCells(const LensProblem& problem, ViewSpread& spread) {
     for (const SeenCorners& view : problem.views) {
         for (const SeenCorner& corner : view) {
             const int column = static_cast<int>(corner.at_px.x() * kColumns / problem.width_px);
             const int row = static_cast<int>(corner.at_px.y() * kRows / problem.height_px);
-            cells.insert(row * kColumns + column);
+            ++spread.corners.at(static_cast<std::size_t>(std::clamp(row, 0, kRows - 1)))
+                  .at(static_cast<std::size_t>(std::clamp(column, 0, kColumns - 1)));
         }
     }
-    return static_cast<double>(cells.size()) / (kColumns * kRows);
+    int covered = 0;
+    for (const auto& row : spread.corners)
+        covered += static_cast<int>(std::ranges::count_if(row, [](int n) { return n > 0; }));
+    spread.covered = static_cast<double>(covered) / (kColumns * kRows);
 }
 
 ViewSpread Spread(const LensProblem& problem, const LensSolution& solution) {
-    ViewSpread spread{.covered = Covered(problem), .farthest = 1e9};
+    ViewSpread spread{.farthest = 1e9};
+    CountCells(problem, spread);
     Vector3d end_m = Vector3d::Zero();
     for (const Vector3d& corner : problem.board.Corners()) end_m = end_m.cwiseMax(corner);
     const Vector3d middle = end_m / 2;
@@ -98,48 +104,15 @@ double Bulge(const LensProblem& problem, const LensSolution& solution) {
     return farthest;
 }
 
-/// The polynomial may turn back between the last corner seen and the corner of the picture.
-double GrowsUpTo(const CameraModel& model) {
-    constexpr double kStep = 0.005;
-    const double most = model.kind == CameraModel::Kind::kPinholeRadtan ? 1.5 : 3.1;
-    CameraModel everywhere = model;
+void AddResiduals(const LensProblem& problem, const LensSolution& solution, std::size_t view,
+                  int index, std::vector<CornerResidual>& residuals) {
+    CameraModel everywhere = solution.model;
     everywhere.max_theta_rad = 3.14;
-    double last = -1;
-    double theta = 0;
-    for (; theta < most; theta += kStep) {
-        const auto at = everywhere.Project({std::sin(theta), 0, std::cos(theta)});
-        const double radius = (at->x() - model.cx_px) / model.fx_px;
-        if (!(radius > last)) break;
-        last = radius;
-        if (std::abs(radius) * model.fx_px > std::hypot(model.width_px, model.height_px)) break;
+    for (const SeenCorner& corner : problem.views[view]) {
+        const Vector3d& at_m = solution.board_m[static_cast<std::size_t>(corner.index)];
+        const auto expected = everywhere.Project(solution.T_camera_board[view] * at_m);
+        if (expected) residuals.push_back({index, corner.at_px, corner.at_px - *expected});
     }
-    return std::max(0.05, theta - 2 * kStep);
-}
-
-/// The farthest ray that has a pixel in the picture and an inverse.
-void LimitField(CameraModel& model) {
-    model.max_theta_rad = GrowsUpTo(model);
-    double farthest = 0;
-    for (const double x : {0.0, model.width_px - 1.0}) {
-        for (const double y : {0.0, model.height_px - 1.0}) {
-            const auto direction = model.Unproject({x, y});
-            if (!direction) return;
-            farthest = std::max(farthest, std::acos(std::clamp(direction->z(), -1.0, 1.0)));
-        }
-    }
-    model.max_theta_rad = std::min(model.max_theta_rad, farthest + 0.01);
-}
-
-std::vector<ViewOutcome> Outcomes(const std::vector<std::string>& names,
-                                  const std::vector<std::size_t>& used,
-                                  const LensSolution& solution) {
-    std::vector<ViewOutcome> outcomes;
-    for (const std::string& name : names) outcomes.push_back({.name = name});
-    for (std::size_t i = 0; i < used.size(); ++i) {
-        outcomes[used[i]].used = true;
-        outcomes[used[i]].rms_px = solution.view_rms_px[i];
-    }
-    return outcomes;
 }
 
 Intrinsics Describe(const LensProblem& problem, const Candidate& candidate) {
@@ -150,7 +123,7 @@ Intrinsics Describe(const LensProblem& problem, const Candidate& candidate) {
     result.rms_px = solution.rms_px;
     result.heldout_rms_px = candidate.heldout_rms_px;
     result.spread = Spread(problem, solution);
-    LimitField(result.model);
+    result.model.max_theta_rad = FieldOf(result.model);
     if (solution.covariance) {
         for (int i = 0; i < solution.covariance->rows(); ++i)
             result.sigma.push_back(std::sqrt((*solution.covariance)(i, i)));
@@ -162,19 +135,22 @@ Intrinsics Describe(const LensProblem& problem, const Candidate& candidate) {
 
 }  // namespace
 
-std::optional<Intrinsics> MeasureIntrinsics(const LensProblem& all,
-                                            const std::vector<std::string>& names) {
-    LensProblem problem = all;
+std::optional<Intrinsics> MeasureIntrinsics(const LensPictures& pictures) {
+    std::vector<ViewOutcome> outcomes = LookAtViews(pictures);
+    std::vector<std::size_t> used;
+    LensProblem problem = ProblemOf(pictures, outcomes, used);
     TurnAlike(problem);
     const auto robust = SolveLens(problem, {.shape = BoardShape::kMeasured, .robust = true});
     if (!robust) return std::nullopt;
-    std::vector<std::size_t> used(problem.views.size());
-    for (std::size_t i = 0; i < used.size(); ++i) used[i] = i;
-    LeaveOutliersOut(*robust, problem, used);
+    LeaveOutliersOut(*robust, problem, used, outcomes);
     const auto chosen = Choose(problem);
     if (!chosen) return std::nullopt;
     Intrinsics result = Describe(problem, *chosen);
-    result.views = Outcomes(names, used, chosen->solution);
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        outcomes[used[i]].rms_px = chosen->solution.view_rms_px[i];
+        AddResiduals(problem, chosen->solution, i, static_cast<int>(used[i]), result.residuals);
+    }
+    result.views = std::move(outcomes);
     JudgeIntrinsics(result);
     return result;
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <vector>
 
 #include "calib/intrinsics.hpp"
 
@@ -14,6 +15,7 @@ constexpr double kLeastCovered = 0.4;
 constexpr double kMostRms_px = 1.0;
 /// Errors in new views against those that were fitted: more is a fit to noise.
 constexpr double kMostOverfit = 2.0;
+constexpr double kMostBlur_px = 2.5;
 constexpr double kMostFocalSigma = 0.01;  // of the focal length
 constexpr double kMostUncertainty_px = 1.0;
 
@@ -25,7 +27,7 @@ std::string Text(const char* format, Values... values) {
 }
 
 void JudgeViews(Intrinsics& found) {
-    const auto used = std::ranges::count_if(found.views, &ViewOutcome::used);
+    const auto used = std::ranges::count_if(found.views, &ViewOutcome::is_used);
     if (used < kFewestViews) {
         found.reasons.push_back(Text("only %d views can be used: take at least %d, from all sides",
                                      static_cast<int>(used), kFewestViews));
@@ -61,6 +63,20 @@ void JudgeFit(Intrinsics& found) {
     }
 }
 
+void JudgeSharpness(Intrinsics& found) {
+    std::vector<double> blurs_px;
+    for (const ViewOutcome& view : found.views)
+        if (view.is_used() && view.blur_px) blurs_px.push_back(*view.blur_px);
+    if (blurs_px.empty()) return;
+    const auto middle = blurs_px.begin() + static_cast<std::ptrdiff_t>(blurs_px.size() / 2);
+    std::ranges::nth_element(blurs_px, middle);
+    if (*middle <= kMostBlur_px) return;
+    found.reasons.push_back(
+        Text("the board's edges are smeared over %.1f px (standard deviation), at most %.1f may "
+             "be: focus the camera, clean its lens, hold the board still",
+             *middle, kMostBlur_px));
+}
+
 void JudgeUncertainty(Intrinsics& found) {
     if (found.sigma.empty()) {
         found.reasons.push_back("the views do not determine the lens: take more, tilted and near");
@@ -89,6 +105,7 @@ void JudgeIntrinsics(Intrinsics& found) {
     found.reasons.clear();
     JudgeViews(found);
     JudgeFit(found);
+    JudgeSharpness(found);
     JudgeUncertainty(found);
     found.verdict = found.reasons.empty() ? Verdict::kPass : Verdict::kFail;
 }

@@ -18,7 +18,7 @@ std::string Quoted(const std::string& text) {
 }
 
 std::string Quality(const Intrinsics& lens) {
-    const auto used = std::ranges::count_if(lens.views, &ViewOutcome::used);
+    const auto used = std::ranges::count_if(lens.views, &ViewOutcome::is_used);
     std::string text = "quality:\n  rms_px: " + ExactText(lens.rms_px);
     if (lens.heldout_rms_px) text += "\n  heldout_rms_px: " + ExactText(*lens.heldout_rms_px);
     text += "\n  views_used: " + std::to_string(used) +
@@ -38,10 +38,15 @@ std::string Sigma(const Intrinsics& lens) {
     return text + "]\n";
 }
 
-std::string LensText(const Intrinsics& lens, const std::string& written_by) {
-    return "schema: 1\nverdict: " + std::string(ToString(lens.verdict)) +
-           "\nwritten_by: " + Quoted(written_by) + CameraModelText(lens.model, "\n") + "\n" +
-           Quality(lens) + Sigma(lens);
+std::string Head(const algo::CameraModel& model, Verdict verdict, const std::string& written_by) {
+    return "schema: 1\nverdict: " + std::string(ToString(verdict)) +
+           "\nwritten_by: " + Quoted(written_by) + CameraModelText(model, "\n") + "\n";
+}
+
+/// What could not be read back does not replace anything.
+std::string Replace(const std::filesystem::path& file, const std::string& text) {
+    return ReplaceFile(file, text,
+                       [](const std::filesystem::path& fresh) { return LoadLens(fresh).error; });
 }
 
 /// For people only: whatever stands there is not looked at.
@@ -74,8 +79,13 @@ LoadedLens LoadLens(const std::filesystem::path& file) {
 
 std::string SaveLens(const Intrinsics& intrinsics, const std::string& written_by,
                      const std::filesystem::path& file) {
-    return ReplaceFile(file, LensText(intrinsics, written_by),
-                       [](const std::filesystem::path& fresh) { return LoadLens(fresh).error; });
+    return Replace(file, Head(intrinsics.model, intrinsics.verdict, written_by) +
+                             Quality(intrinsics) + Sigma(intrinsics));
+}
+
+std::string SaveUncheckedLens(const algo::CameraModel& model, const std::string& written_by,
+                              const std::filesystem::path& file) {
+    return Replace(file, Head(model, Verdict::kUnchecked, written_by));
 }
 
 }  // namespace hitchview::calib

@@ -25,4 +25,8 @@ LoadedLens LoadLens(const std::filesystem::path& file);
 std::string SaveLens(const Intrinsics& intrinsics, const std::string& written_by,
                      const std::filesystem::path& file);
 
+/// The same of a lens that was not measured here: its verdict is kUnchecked.
+std::string SaveUncheckedLens(const algo::CameraModel& model, const std::string& written_by,
+                              const std::filesystem::path& file);
+
 }  // namespace hitchview::calib

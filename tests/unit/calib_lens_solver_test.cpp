@@ -208,8 +208,11 @@ TEST(ViewSelectionTest, PicturesThatAreOneGetOneNumber) {
     EXPECT_EQ(DistinctViews(problem), (std::vector<int>{0, 1, 2, 1}));
 }
 
-std::vector<std::string> Names(const LensProblem& problem) {
-    return std::vector<std::string>(problem.views.size(), "view");
+LensPictures PicturesOf(const LensProblem& problem) {
+    LensPictures pictures{problem.kind, problem.width_px, problem.height_px, problem.board, {}};
+    for (const SeenCorners& corners : problem.views)
+        pictures.views.push_back({.name = "view", .corners = corners, .blur_px = 0.6});
+    return pictures;
 }
 
 bool Says(const Intrinsics& lens, const std::string& what) {
@@ -219,7 +222,7 @@ bool Says(const Intrinsics& lens, const std::string& what) {
 
 TEST(IntrinsicsTest, GoodViewsPass) {
     const LensProblem problem = BoardViews(tests::FisheyeLens(), kBoard, 9).Problem(25, kNoise_px);
-    const auto lens = MeasureIntrinsics(problem, Names(problem));
+    const auto lens = MeasureIntrinsics(PicturesOf(problem));
 
     ASSERT_TRUE(lens);
     EXPECT_EQ(lens->verdict, Verdict::kPass) << (lens->reasons.empty() ? "" : lens->reasons[0]);
@@ -228,9 +231,33 @@ TEST(IntrinsicsTest, GoodViewsPass) {
     EXPECT_NEAR(*lens->heldout_rms_px, std::sqrt(2.0) * kNoise_px, 0.05);
 }
 
+TEST(IntrinsicsTest, ASmearedViewAndOneWithFewCornersAreLeftOut) {
+    const LensProblem problem = BoardViews(tests::FisheyeLens(), kBoard, 9).Problem(15, kNoise_px);
+    LensPictures pictures = PicturesOf(problem);
+    pictures.views[3].blur_px = 1.9;
+    pictures.views[8].corners.resize(9);  // one row
+    const auto lens = MeasureIntrinsics(pictures);
+
+    ASSERT_TRUE(lens);
+    EXPECT_EQ(lens->views[3].fate, ViewOutcome::Fate::kSmeared);
+    EXPECT_EQ(lens->views[8].fate, ViewOutcome::Fate::kFewCorners);
+    EXPECT_EQ(std::ranges::count_if(lens->views, &ViewOutcome::is_used), 13);
+}
+
+TEST(IntrinsicsTest, ACameraOutOfFocusFails) {
+    const LensProblem problem = BoardViews(tests::FisheyeLens(), kBoard, 9).Problem(15, kNoise_px);
+    LensPictures pictures = PicturesOf(problem);
+    for (BoardView& view : pictures.views) view.blur_px = 2.6;
+    const auto lens = MeasureIntrinsics(pictures);
+
+    ASSERT_TRUE(lens);
+    EXPECT_EQ(lens->verdict, Verdict::kFail);
+    EXPECT_TRUE(Says(*lens, "smeared over 2.6 px"));
+}
+
 TEST(IntrinsicsTest, FewViewsFail) {
     const LensProblem problem = BoardViews(tests::FisheyeLens(), kBoard, 10).Problem(4, kNoise_px);
-    const auto lens = MeasureIntrinsics(problem, Names(problem));
+    const auto lens = MeasureIntrinsics(PicturesOf(problem));
 
     ASSERT_TRUE(lens);
     EXPECT_EQ(lens->verdict, Verdict::kFail);
@@ -241,7 +268,7 @@ TEST(IntrinsicsTest, BoardsThatAllFaceThePinholeCameraFail) {
     BoardViews views(tests::PinholeLens(), kBoard, 11);
     views.SetMostTilt(0.02);
     const LensProblem problem = views.Problem(15, kNoise_px);
-    const auto lens = MeasureIntrinsics(problem, Names(problem));
+    const auto lens = MeasureIntrinsics(PicturesOf(problem));
 
     ASSERT_TRUE(lens);
     EXPECT_EQ(lens->verdict, Verdict::kFail);
