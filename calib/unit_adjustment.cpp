@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 
+#include "calib/far_matches.hpp"
 #include "calib/normal_equations.hpp"
 #include "calib/unit_errors.hpp"
 
@@ -16,6 +17,10 @@ constexpr double kOrdinaryError = 3.0;
 constexpr double kOrdinaryMatch = 1.5;
 constexpr double kMatchSigma_px = 0.5;
 constexpr double kNearestFar_m = 10;
+/// Matches beyond some hundred metres count as infinitely far; nearer ones have the distance that
+/// suits them best, so they tell nothing along the line between the cameras.
+constexpr double kFarSigma_per_m = 1.0 / 5000;
+constexpr double kFarEnough = 12;
 
 }  // namespace
 
@@ -100,20 +105,25 @@ struct UnitAdjustment::Blocks {
 
     void AddMatch(const FarMatch& match) {
         using Error = ceres::AutoDiffCostFunction<FarMatchError, 2, 6, 6, 1>;
-        const auto direction = problem.cameras[match.first].model.Unproject(match.first_px);
-        if (!direction) return;
-        // Inverse distance 0 is where most of them are, and not on the bound.
-        inverse_m.push_back(0.1 / kNearestFar_m);
+        double angle_rad = 0;
+        const auto inverse_start =
+            BestInverseDistance(match, problem, first.T_unit_camera, angle_rad);
+        if (!inverse_start) return;
+        inverse_m.push_back(*inverse_start);
         double* const inverse = &inverse_m.back();
-        auto* const error = new FarMatchError{lenses[match.second],
-                                              first.T_unit_camera[match.first],
-                                              first.T_unit_camera[match.second],
-                                              *direction,
-                                              match.second_px,
-                                              std::sqrt(2.0) * kMatchSigma_px};
+        auto* const error =
+            new FarMatchError{lenses[match.second],
+                              first.T_unit_camera[match.first],
+                              first.T_unit_camera[match.second],
+                              problem.cameras[match.first].model.Unproject(match.first_px).value(),
+                              match.second_px,
+                              std::sqrt(2.0) * kMatchSigma_px};
         matches.push_back(all.AddResidualBlock(new Error(error),
                                                new ceres::CauchyLoss(kOrdinaryMatch),
                                                Camera(match.first), Camera(match.second), inverse));
+        all.AddResidualBlock(new ceres::AutoDiffCostFunction<AtInfinityError, 1, 1>(
+                                 new AtInfinityError{kFarSigma_per_m}),
+                             new ceres::TukeyLoss(kFarEnough), inverse);
         all.SetParameterLowerBound(inverse, 0, 0);
         all.SetParameterUpperBound(inverse, 0, 1 / kNearestFar_m);
     }

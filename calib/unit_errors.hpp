@@ -100,4 +100,16 @@ struct FarMatchError {
     double sigma_px;
 };
 
+/// Of a match that is farther away than parallax can be seen; to be used with a loss that forgets
+/// it where it is not.
+struct AtInfinityError {
+    template <typename T>
+    bool operator()(const T* inverse_m, T* error) const {
+        error[0] = inverse_m[0] / T(sigma_per_m);
+        return true;
+    }
+
+    double sigma_per_m;
+};
+
 }  // namespace hitchview::calib
