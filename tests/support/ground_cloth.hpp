@@ -57,7 +57,7 @@ class ClothReader {
                                 .fy_px = camera_(1, 1),
                                 .cx_px = camera_(0, 2),
                                 .cy_px = camera_(1, 2),
-                                .max_theta_rad = 1.6};
+                                .max_theta_rad = 2.0};
         for (int i = 0; i < 4; ++i) model.distortion[static_cast<std::size_t>(i)] = distortion_(i);
         return model;
     }
