@@ -4,6 +4,7 @@
 
 #include "app/calib_formats_arguments.hpp"
 #include "app/calib_intrinsics_verb.hpp"
+#include "app/calib_unit_verb.hpp"
 
 namespace {
 
@@ -59,13 +60,16 @@ int main(int argc, char** argv) {
     const CLI::App& import_verb = AddCalibImport(app, imported);
     CalibExportOptions exported;
     const CLI::App& export_verb = AddCalibExport(app, exported);
+    UnitOptions unit;
+    const CLI::App& unit_verb = AddUnit(app, unit);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : kWrongUse;
     }
-    intrinsics.command = imported.command = CommandLine(argc, argv);
+    intrinsics.command = imported.command = unit.command = CommandLine(argc, argv);
     if (import_verb.parsed()) return CalibImportVerb(imported);
     if (export_verb.parsed()) return CalibExportVerb(exported);
+    if (unit_verb.parsed()) return UnitVerb(unit);
     return IntrinsicsVerb(intrinsics);
 }

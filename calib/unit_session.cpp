@@ -1,8 +1,10 @@
 #include "calib/unit_session.hpp"
 
+#include <algorithm>
 #include <array>
 #include <numbers>
 
+#include "calib/board_pattern.hpp"
 #include "calib/lens_file.hpp"
 #include "calib/rig_calibration.hpp"
 #include "calib/yaml_map.hpp"
@@ -25,15 +27,18 @@ constexpr std::array kPrintedCorners{
     Choice<PrintedCorner>{"top_left", {0, 0}}, Choice<PrintedCorner>{"top_right", {1, 0}},
     Choice<PrintedCorner>{"bottom_right", {1, 1}}, Choice<PrintedCorner>{"bottom_left", {0, 1}}};
 
-/// The outermost corners that a camera sees are those of tags, but one square inside the outline of
-/// squares.
 Vector3d PlaceOf(const PrintedCorner& corner, const Board& board) {
-    const bool tags = board.pattern == Pattern::kTags;
-    const double rim_m = tags ? 0 : board.square_m;
-    const double last_m = tags ? board.tag_m : 0;
-    const double width_m = (board.columns - 1) * board.square_m + last_m + 2 * rim_m;
-    const double height_m = (board.rows - 1) * board.square_m + last_m + 2 * rim_m;
-    return {corner.right * width_m - rim_m, corner.down * height_m - rim_m, 0};
+    const BoardRectangle area = PatternArea(board);
+    return {area.from_m.x() + corner.right * area.size_m().x(),
+            area.from_m.y() + corner.down * area.size_m().y(), 0};
+}
+
+/// Whether a picture that shows one could as well show the other.
+bool LookAlike(const Board& a, const Board& b) {
+    const bool tags = a.pattern != Pattern::kCheckerboard && b.pattern != Pattern::kCheckerboard;
+    if (tags) return a.first_tag < b.first_tag + b.tags() && b.first_tag < a.first_tag + a.tags();
+    return a.pattern == b.pattern &&
+           std::minmax(a.columns, a.rows) == std::minmax(b.columns, b.rows);
 }
 
 Vector3d ReadPoint(const YamlValue& value) {
@@ -135,6 +140,11 @@ class SessionReader {
         if (sigma.given()) sigma.Read(Range<double>{0.0001, 0.5}, target.sigma_m);
         if (sigma.given() && !surveyed.given())
             sigma.Refuse("left out where no corner is surveyed");
+        for (const UnitTarget& other : session_.problem.targets) {
+            if (known && LookAlike(other.board, target.board))
+                board.Refuse("one that cannot be mistaken for that of " + other.name +
+                             ": other tags, or another number of squares");
+        }
         map.Finish();
         session_.problem.targets.push_back(std::move(target));
     }

@@ -47,7 +47,7 @@ TEST_F(UnitSessionTest, SaysWhatAPersonWrote) {
         "1}}\n",
         "  gate: {board: '9x6,0.1', surveyed: [{corner: bottom_right, at_m: [4, 5, 6]}], sigma_m: "
         "0.002}\n"
-        "  carried: {board: '9x6,0.1', moves: true}\n");
+        "  carried: {board: '8x6,0.1', moves: true}\n");
 
     ASSERT_EQ(loaded.error, "");
     const UnitSession& session = *loaded.session;
@@ -93,6 +93,7 @@ TEST_F(UnitSessionTest, NamesEveryMistakeWithItsLine) {
     EXPECT_THAT(loaded.error, HasSubstr("corner is top, must be"));
     EXPECT_THAT(loaded.error, HasSubstr("must be given once"));
     EXPECT_THAT(loaded.error, HasSubstr("left out where no corner is surveyed"));
+    EXPECT_THAT(loaded.error, HasSubstr("one that cannot be mistaken for that of pole"));
     EXPECT_FALSE(loaded.session);
 }
 
