@@ -4,6 +4,7 @@
 
 #include "app/calib_formats_arguments.hpp"
 #include "app/calib_intrinsics_verb.hpp"
+#include "app/calib_report_verb.hpp"
 
 namespace {
 
@@ -45,6 +46,17 @@ CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
     return verb;
 }
 
+CLI::App& AddReport(CLI::App& app, CalibReportOptions& options) {
+    CLI::App& verb = *app.add_subcommand(
+        "report",
+        "Make one page of the figures that other verbs have written with --json.\n"
+        "Example: hitchview-calib report --json front.json rear.json tractor.json --out "
+        "report.html");
+    verb.add_option("--json", options.json, "files of intrinsics, unit, verify")->required();
+    verb.add_option("--out", options.out, "HTML page to write")->required();
+    return verb;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -57,13 +69,16 @@ int main(int argc, char** argv) {
     const CLI::App& import_verb = AddCalibImport(app, imported);
     CalibExportOptions exported;
     const CLI::App& export_verb = AddCalibExport(app, exported);
+    CalibReportOptions report;
+    const CLI::App& report_verb = AddReport(app, report);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : kWrongUse;
     }
-    intrinsics.command = imported.command = CommandLine(argc, argv);
+    intrinsics.command = imported.command = report.command = CommandLine(argc, argv);
     if (import_verb.parsed()) return CalibImportVerb(imported);
     if (export_verb.parsed()) return CalibExportVerb(exported);
+    if (report_verb.parsed()) return CalibReportVerb(report);
     return IntrinsicsVerb(intrinsics);
 }
