@@ -1,9 +1,9 @@
 #include "app/evaluation_report.hpp"
 
-#include "app/evaluation_report_html.hpp"
+#include "app/html_report.hpp"
 #include "app/evaluation_report_pictures.hpp"
 #include "app/evaluation_report_series.hpp"
-#include "app/evaluation_report_style.hpp"
+#include "app/html_report_style.hpp"
 #include "app/evaluation_report_tables.hpp"
 
 namespace hitchview::app {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/evaluation_report_html.hpp"
+#include "app/html_report.hpp"
 
 namespace hitchview::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/evaluation_report_axis.hpp"
-#include "app/evaluation_report_html.hpp"
+#include "app/html_report.hpp"
 
 namespace hitchview::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "app/evaluation_coverage.hpp"
-#include "app/evaluation_report_html.hpp"
+#include "app/html_report.hpp"
 
 namespace hitchview::app {
 namespace {

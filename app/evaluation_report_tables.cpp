@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/evaluation_paper.hpp"
-#include "app/evaluation_report_html.hpp"
+#include "app/html_report.hpp"
 
 namespace hitchview::app {
 namespace {

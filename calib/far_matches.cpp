@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "calib/far_consensus.hpp"
 
 namespace hitchview::calib {
 namespace {
@@ -16,7 +20,7 @@ using Eigen::Vector3d;
 
 constexpr double kNearestFar_m = 10;
 /// How far rays of one thing may be apart because the cameras are only roughly known.
-constexpr double kRough_rad = 0.02;
+constexpr double kRough_rad = 0.05;
 constexpr double kHalfView = 1.2;  // tangent of the angle from the middle of the view to its edge
 constexpr double kClearly = 0.75;  // best over second best distance of descriptors
 constexpr int kFewestPixels = 2000;
@@ -77,27 +81,46 @@ Redrawn Redraw(const CommonView& view, const algo::CameraModel& model,
 
 struct Features {
     std::vector<cv::KeyPoint> points;
+    std::vector<Vector3d> rays;  ///< of unit length
     cv::Mat descriptors;
 };
 
 /// Within `box`; points of the whole view.
-Features Detect(const Redrawn& redrawn, const cv::Mat1b& mask, const cv::Rect& box) {
+Features Detect(const CommonView& view, const Redrawn& redrawn, const cv::Mat1b& mask,
+                const cv::Rect& box) {
     Features features;
-    cv::SIFT::create(kMostFeatures)
+    constexpr int kLayers = 3;
+    constexpr double kLeastContrast = 0.02;
+    cv::SIFT::create(kMostFeatures, kLayers, kLeastContrast)
         ->detectAndCompute(redrawn.picture(box), mask(box), features.points, features.descriptors);
-    for (cv::KeyPoint& point : features.points) point.pt += cv::Point2f(box.tl());
+    for (cv::KeyPoint& point : features.points) {
+        point.pt += cv::Point2f(box.tl());
+        features.rays.push_back(view.RayOf(point.pt.x, point.pt.y).normalized());
+    }
     return features;
 }
 
-/// For each feature the other that is clearly the best, or -1.
-std::vector<int> Best(const Features& of, const Features& among) {
+/// For each feature the other that is clearly the best of those that lie where its thing could be,
+/// from 10 m to infinity; or -1. `baseline_m`: from the camera of `among` to that of `of`.
+std::vector<int> Best(const Features& of, const Features& among, const Vector3d& baseline_m) {
+    const double least_cosine =
+        std::cos(std::min(1.0, kRough_rad + baseline_m.norm() / kNearestFar_m));
     std::vector<int> best(of.points.size(), -1);
-    if (of.points.empty() || among.points.size() < 2) return best;
-    std::vector<std::vector<cv::DMatch>> matches;
-    cv::BFMatcher(cv::NORM_L2).knnMatch(of.descriptors, among.descriptors, matches, 2);
-    for (const auto& two : matches) {
-        if (two.size() == 2 && two[0].distance < kClearly * two[1].distance)
-            best[static_cast<std::size_t>(two[0].queryIdx)] = two[0].trainIdx;
+    for (std::size_t i = 0; i < of.points.size(); ++i) {
+        double least = std::numeric_limits<double>::infinity();
+        double second = least;
+        for (std::size_t k = 0; k < among.points.size(); ++k) {
+            if (of.rays[i].dot(among.rays[k]) < least_cosine ||
+                AngleAtBestDistance(of.rays[i], among.rays[k], baseline_m).angle_rad > kRough_rad)
+                continue;
+            const double distance = cv::norm(of.descriptors.row(static_cast<int>(i)),
+                                             among.descriptors.row(static_cast<int>(k)));
+            second = std::min(second, std::max(distance, least));
+            if (distance >= least) continue;
+            least = distance;
+            best[i] = static_cast<int>(k);
+        }
+        if (least >= kClearly * second) best[i] = -1;
     }
     return best;
 }
@@ -125,10 +148,11 @@ class PairMatcher {
                   cv::BORDER_CONSTANT, cv::Scalar(0));
         if (cv::countNonZero(mask) < kFewestPixels) return;
         const cv::Rect box = cv::boundingRect(mask);
-        const Features of_a = Detect(a, mask, box);
-        const Features of_b = Detect(b, mask, box);
-        const std::vector<int> to_b = Best(of_a, of_b);
-        const std::vector<int> to_a = Best(of_b, of_a);
+        const Features of_a = Detect(view_, a, mask, box);
+        const Features of_b = Detect(view_, b, mask, box);
+        const Vector3d baseline_m = T_unit_a_.translation() - T_unit_b_.translation();
+        const std::vector<int> to_b = Best(of_a, of_b, baseline_m);
+        const std::vector<int> to_a = Best(of_b, of_a, -baseline_m);
         for (std::size_t i = 0; i < to_b.size(); ++i) {
             if (to_b[i] < 0) continue;
             const auto k = static_cast<std::size_t>(to_b[i]);
@@ -139,10 +163,6 @@ class PairMatcher {
  private:
     void Add(const cv::Point2f& at_a, const cv::Point2f& at_b,
              std::vector<FarMatch>& matches) const {
-        const double baseline_m = (T_unit_a_.translation() - T_unit_b_.translation()).norm();
-        const double farthest_px = (kRough_rad + baseline_m / kNearestFar_m) * view_.focal_px *
-                                   (1 + kHalfView * kHalfView);
-        if (cv::norm(at_a - at_b) > farthest_px) return;
         const auto pixel_a = PixelOf(a_, T_unit_a_, at_a);
         const auto pixel_b = PixelOf(b_, T_unit_b_, at_b);
         if (pixel_a && pixel_b) matches.push_back({first_, second_, *pixel_a, *pixel_b});
@@ -165,6 +185,16 @@ class PairMatcher {
 
 }  // namespace
 
+BestDistance AngleAtBestDistance(const Vector3d& first, const Vector3d& second,
+                                 const Vector3d& baseline_m) {
+    // |(first + baseline / distance) x second| is least.
+    const Vector3d change = baseline_m.cross(second);
+    const double inverse_m =
+        std::clamp(-first.cross(second).dot(change) / change.squaredNorm(), 0.0, 1 / kNearestFar_m);
+    const Vector3d seen = first + inverse_m * baseline_m;
+    return {inverse_m, std::atan2(seen.cross(second).norm(), seen.dot(second))};
+}
+
 std::optional<double> BestInverseDistance(const FarMatch& match, const UnitProblem& problem,
                                           std::span<const Isometry3d> T_unit_camera,
                                           double& angle_rad) {
@@ -173,16 +203,11 @@ std::optional<double> BestInverseDistance(const FarMatch& match, const UnitProbl
     const auto from_first = problem.cameras[match.first].model.Unproject(match.first_px);
     const auto from_second = problem.cameras[match.second].model.Unproject(match.second_px);
     if (!from_first || !from_second) return std::nullopt;
-    const Vector3d ray = first.linear() * *from_first;
-    const Vector3d other = second.linear() * *from_second;
-    const Vector3d baseline = first.translation() - second.translation();
-    // |(ray + baseline / distance) x other| is least.
-    const Vector3d change = baseline.cross(other);
-    const double inverse_m =
-        std::clamp(-ray.cross(other).dot(change) / change.squaredNorm(), 0.0, 1 / kNearestFar_m);
-    const Vector3d seen = ray + inverse_m * baseline;
-    angle_rad = std::atan2(seen.cross(other).norm(), seen.dot(other));
-    return inverse_m;
+    const BestDistance best =
+        AngleAtBestDistance(first.linear() * *from_first, second.linear() * *from_second,
+                            first.translation() - second.translation());
+    angle_rad = best.angle_rad;
+    return best.inverse_m;
 }
 
 std::vector<FarMatch> FindFarMatches(const std::vector<UnitCamera>& cameras,
@@ -195,7 +220,10 @@ std::vector<FarMatch> FindFarMatches(const std::vector<UnitCamera>& cameras,
                 T_unit_camera[a].linear().col(2).dot(T_unit_camera[b].linear().col(2));
             constexpr double kOpposite = -0.3;
             if (cosine < kOpposite) continue;
-            PairMatcher(cameras, T_unit_camera, a, b).Match(pictures[a], pictures[b], matches);
+            std::vector<FarMatch> of_pair;
+            PairMatcher(cameras, T_unit_camera, a, b).Match(pictures[a], pictures[b], of_pair);
+            std::ranges::move(AgreeingMatches(of_pair, cameras, T_unit_camera),
+                              std::back_inserter(matches));
         }
     }
     return matches;

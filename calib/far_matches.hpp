@@ -15,10 +15,21 @@ namespace hitchview::calib {
 /// Both pictures are redrawn as a camera between the two would see a scene far away, so that the
 /// distortion of the lenses is out of the way; SIFT features (Lowe, 2004) are matched there, each
 /// with the best one that is clearly better than the second best, in both directions, and not
-/// farther apart than something 10 m away could be.
+/// farther apart than something 10 m away could be; of these, those that agree (see
+/// AgreeingMatches).
 std::vector<FarMatch> FindFarMatches(const std::vector<UnitCamera>& cameras,
                                      std::span<const Eigen::Isometry3d> T_unit_camera,
                                      std::span<const cv::Mat> pictures);
+
+/// How two cameras see one thing at the distance that suits both best.
+struct BestDistance {
+    double inverse_m = 0;  ///< [0, 0.1]: 10 m and more
+    double angle_rad = 0;  ///< that is left between the two rays
+};
+
+/// Of unit-length rays in the unit frame; `baseline_m`: from the second camera to the first.
+BestDistance AngleAtBestDistance(const Eigen::Vector3d& first, const Eigen::Vector3d& second,
+                                 const Eigen::Vector3d& baseline_m);
 
 /// Inverse of the distance from 10 m on at which the rays of a match come nearest to each other,
 /// [0, 0.1]; empty where a lens has no ray. `angle_rad`: what is between them then.

@@ -127,7 +127,8 @@ class XmlReader {
 
     bool Branch(std::string_view name) {
         const std::size_t next = std::min(rest_.find('<'), rest_.size());
-        const bool list = rest_.substr(next).starts_with("<_");
+        const bool list =
+            rest_.substr(next).starts_with("<_>") || rest_.substr(next).starts_with("<_ ");
         yaml_ += list ? '[' : '{';
         open_.push_back({std::string(name), list ? ']' : '}'});
         return true;

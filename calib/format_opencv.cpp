@@ -57,9 +57,11 @@ CameraModel ReadOpenCvSize(YamlMap& root, const ImportHints& hints) {
     if (pair.given()) {
         ReadSize(pair, model);
         CheckSize(pair, hints, model);
-    } else if (hints.size_px && !width.given() && !height.given()) {
-        model.width_px = (*hints.size_px)[0];
-        model.height_px = (*hints.size_px)[1];
+    } else if (!width.given() && !height.given()) {
+        if (!hints.size_px) width.RefuseOrMiss("given, or told with --size");
+        const auto [width_px, height_px] = hints.size_px.value_or(std::array{0, 0});
+        model.width_px = width_px;
+        model.height_px = height_px;
     } else {
         width.Read(kSize, model.width_px);
         height.Read(kSize, model.height_px);

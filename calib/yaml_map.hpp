@@ -95,6 +95,8 @@ class YamlValue {
 
     /// Complains about a value that was read and that does not fit the rest of the file.
     void Refuse(const std::string& must_be) const;
+    /// The same, or where it is required and not given, about that.
+    void RefuseOrMiss(const std::string& must_be) const;
 
  private:
     /// The text of a scalar; complains where there is none.
@@ -102,7 +104,6 @@ class YamlValue {
     [[nodiscard]] std::optional<std::int64_t> WholeNumber(const Range<std::int64_t>& range) const;
     [[nodiscard]] std::optional<std::size_t> Index(
         const std::vector<std::string_view>& names) const;
-    void RefuseOrMiss(const std::string& must_be) const;
 
     std::optional<YAML::Node> node_;
     bool required_;

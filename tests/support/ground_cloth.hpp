@@ -83,10 +83,10 @@ class ClothReader {
         // A map has any sign: the middle of its near edge is in front of the camera.
         const cv::Vec3d ahead = map_.inv() * cv::Vec3d(600, 350, 1);
         if (flat[2] * ahead[2] <= 0) return std::nullopt;
-        const double a = (flat[0] / flat[2] - camera_(0, 2) - shift_(0)) /
-                         (camera_(0, 0) * scale_(0));
-        const double b = (flat[1] / flat[2] - camera_(1, 2) - shift_(1)) /
-                         (camera_(1, 1) * scale_(1));
+        const double a =
+            (flat[0] / flat[2] - camera_(0, 2) - shift_(0)) / (camera_(0, 0) * scale_(0));
+        const double b =
+            (flat[1] / flat[2] - camera_(1, 2) - shift_(1)) / (camera_(1, 1) * scale_(1));
         return picture_.model.Project({a, b, 1});
     }
 

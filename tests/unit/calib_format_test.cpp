@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <opencv2/calib3d.hpp>
@@ -6,7 +7,7 @@
 #include "calib/format.hpp"
 #include "calib/format_rig.hpp"
 #include "tests/support/format_samples.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/format_test.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace hitchview::calib {
@@ -15,7 +16,6 @@ namespace {
 using algo::CameraModel;
 using Kind = CameraModel::Kind;
 using tests::FormatSamples;
-using tests::TemporaryFolder;
 
 constexpr std::array kFormats{Format::kOpenCv, Format::kRos, Format::kKalibr, Format::kMrcal};
 
@@ -30,22 +30,6 @@ void ExpectSame(const CameraModel& got, const CameraModel& expected) {
     EXPECT_EQ(got.distortion, expected.distortion);
     EXPECT_EQ(got.max_theta_rad, expected.max_theta_rad);
 }
-
-class FormatTest : public testing::Test {
- protected:
-    ForeignCameras Imported(Format format, const std::string& text, const ImportHints& hints = {}) {
-        return ImportCameras(format, folder_.Write("lens.txt", text), hints);
-    }
-    /// Without the folder's name.
-    std::string ErrorOf(Format format, const std::string& text, const ImportHints& hints = {}) {
-        std::string error = Imported(format, text, hints).error;
-        const std::string folder = folder_.path() + '/';
-        for (auto at = error.find(folder); at != error.npos; at = error.find(folder))
-            error.erase(at, folder.size());
-        return error;
-    }
-    TemporaryFolder folder_;
-};
 
 TEST_F(FormatTest, LensesComeBackBitForBit) {
     for (unsigned seed = 0; seed < 40; ++seed) {
@@ -262,72 +246,6 @@ TEST_F(FormatTest, FourCoefficientsWithoutANameAreNotGuessed) {
     }
 }
 
-TEST_F(FormatTest, HostileNumbersAreNamedWithTheirLine) {
-    const auto with = [](const std::string& focal, const std::string& width) {
-        return "image_width: " + width + "\nimage_height: 480\nK: [" + focal +
-               ", 0, 320, 0, 300, 240, 0, 0, 1]\nD: [0, 0, 0, 0, 0]\n";
-    };
-    EXPECT_EQ(ErrorOf(Format::kOpenCv, with("300", "640")), "");
-    EXPECT_EQ(ErrorOf(Format::kOpenCv, with("nan", "640")),
-              "lens.txt:3: K[0] is nan, must be -1e+12 to 1e+12");
-    EXPECT_NE(ErrorOf(Format::kOpenCv, with(".Nan", "640")), "");
-    EXPECT_NE(ErrorOf(Format::kOpenCv, with("1e400", "640")), "");
-    EXPECT_NE(ErrorOf(Format::kOpenCv, with("300, 1", "640")), "");
-    EXPECT_EQ(ErrorOf(Format::kOpenCv, with("-300", "640")),
-              "lens.txt:3: K is a list of 9, must be one with focal lengths of 10 to 20000 px, not "
-              "[-300, 300]");
-    EXPECT_EQ(ErrorOf(Format::kOpenCv, with("300", "4000000000")),
-              "lens.txt:1: image_width is 4000000000, must be 64 to 8192");
-    EXPECT_NE(
-        ErrorOf(Format::kOpenCv, "K: {rows: 2000000000, cols: 2000000000, dt: d, data: [1]}\n"),
-        "");
-    EXPECT_EQ(ErrorOf(Format::kOpenCv, with("300", "640") + std::string(2 << 20, '#')),
-              "lens.txt: the file is too long, must be at most 1 MiB");
-}
-
-TEST_F(FormatTest, DeepNestingIsAnErrorAndNothingWorse) {
-    std::string xml = "<?xml version=\"1.0\"?>\n<opencv_storage>\n";
-    for (int i = 0; i < 100000; ++i) xml += "<a>";
-    EXPECT_NE(ErrorOf(Format::kOpenCv, xml), "");
-    for (int i = 0; i < 100000; ++i) xml += "</a>";
-    EXPECT_NE(ErrorOf(Format::kOpenCv, xml + "</opencv_storage>"), "");
-    EXPECT_NE(ErrorOf(Format::kOpenCv, "K: " + std::string(100000, '[')), "");
-    EXPECT_NE(ErrorOf(Format::kMrcal, std::string(100000, '{')), "");
-}
-
-/// Cuts, and bytes that are others.
-TEST_F(FormatTest, DamagedFilesAreErrorsOrLensesInRange) {
-    FormatSamples samples(5);
-    std::mt19937 random(6);
-    const CameraModel lens = samples.Lens(Kind::kPinholeRadtan);
-    CameraModel plain = lens;
-    plain.distortion[4] = 0;
-    const std::string xml =
-        "<?xml version=\"1.0\"?>\n<opencv_storage>\n<!-- x -->\n<resolution>640 480"
-        "</resolution>\n<K type_id=\"opencv-matrix\"><rows>3</rows><cols>3</cols>"
-        "<dt>d</dt><data>\n300 0 320 0 300\n240 0 0 1</data></K>\n<D>0 0 0 0 0</D>"
-        "\n</opencv_storage>\n";
-    ASSERT_EQ(ErrorOf(Format::kOpenCv, xml), "");
-    std::vector<std::pair<Format, std::string>> texts{{Format::kOpenCv, xml}};
-    for (const Format format : kFormats)
-        texts.emplace_back(format, ExportLens(format, "a", plain).files.at(0).text);
-    for (const auto& [format, text] : texts) {
-        for (std::size_t i = 0; i < 150; ++i) {
-            std::string damaged = text.substr(0, i % 2 == 0 ? random() % text.size() : text.size());
-            for (std::size_t k = i % 5; k > 0 && !damaged.empty(); --k)
-                damaged[random() % damaged.size()] = static_cast<char>(random());
-            const ForeignCameras found = Imported(format, damaged);
-            ASSERT_EQ(found.error.empty(), !found.cameras.empty()) << damaged;
-            for (const ForeignCamera& camera : found.cameras) {
-                EXPECT_GE(camera.model.fx_px, 10) << damaged;
-                EXPECT_LE(camera.model.width_px, 8192) << damaged;
-                EXPECT_GE(camera.model.max_theta_rad, 0.05) << damaged;
-                EXPECT_LE(camera.model.max_theta_rad, 3.14) << damaged;
-            }
-        }
-    }
-}
-
 TEST_F(FormatTest, BytesOfMrcalsSolutionArePassedOver) {
     const CameraModel lens = FormatSamples(7).Lens(Kind::kPinholeRadtan);
     std::string text = ExportLens(Format::kMrcal, "a", lens).files.at(0).text;
@@ -349,6 +267,8 @@ TEST(FormatDataTest, FilesOfOtherProgramsAreRead) {
     const ForeignCameras stereo =
         ImportCameras(Format::kOpenCv, pair, {.size_px = std::array{640, 480}});
     ASSERT_EQ(stereo.error, "");
+    EXPECT_THAT(ImportCameras(Format::kOpenCv, pair, {}).error,
+                testing::EndsWith("image_width is missing, must be given, or told with --size"));
     EXPECT_EQ(stereo.cameras.at(1).name, "right");
 
     for (const char* const side : {"front", "back", "left", "right"}) {

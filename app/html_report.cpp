@@ -1,4 +1,4 @@
-#include "app/evaluation_report_html.hpp"
+#include "app/html_report.hpp"
 
 #include <algorithm>
 #include <array>
@@ -29,7 +29,8 @@ std::string Escaped(const std::string& text) {
                 escaped += "&#39;";
                 break;
             default:
-                escaped += c;
+                // Control characters may stand in no document.
+                escaped += static_cast<unsigned char>(c) < ' ' && c != '\n' ? '?' : c;
         }
     }
     return escaped;

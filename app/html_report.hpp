@@ -7,7 +7,8 @@
 
 namespace hitchview::app {
 
-/// Text that may stand between tags and in quoted attributes: & < > " ' are replaced.
+/// Text that may stand between tags and in quoted attributes: & < > " ' and control characters are
+/// replaced.
 std::string Escaped(const std::string& text);
 
 /// With so many digits behind the point; never "-0".
