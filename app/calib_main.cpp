@@ -6,6 +6,7 @@
 
 #include "app/calib_arguments.hpp"
 #include "app/calib_formats_arguments.hpp"
+#include "app/calib_hitch_verb.hpp"
 #include "app/calib_unit_verb.hpp"
 
 namespace {
@@ -34,13 +35,16 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     IntrinsicsOptions intrinsics;
     UnitOptions unit;
+    HitchOptions hitch;
     CalibReportOptions report;
     CalibImportOptions imported;
     CalibExportOptions exported;
-    intrinsics.command = unit.command = report.command = imported.command = CommandLine(argc, argv);
+    intrinsics.command = unit.command = hitch.command = report.command = imported.command =
+        CommandLine(argc, argv);
     const std::vector<Verb> verbs{
         {AddIntrinsics(app, intrinsics), [&] { return IntrinsicsVerb(intrinsics); }},
         {AddUnit(app, unit), [&] { return UnitVerb(unit); }},
+        {AddHitch(app, hitch), [&] { return HitchVerb(hitch); }},
         {AddReport(app, report), [&] { return CalibReportVerb(report); }},
         {AddCalibImport(app, imported), [&] { return CalibImportVerb(imported); }},
         {AddCalibExport(app, exported), [&] { return CalibExportVerb(exported); }},
