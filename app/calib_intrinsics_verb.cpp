@@ -139,6 +139,7 @@ std::string Save(const IntrinsicsOptions& options, const std::vector<Camera>& ca
     if (refused) return options.out.string() + ": cannot be made: " + refused.message();
     for (const Camera& camera : cameras) {
         if (!camera.lens || camera.out.empty()) continue;
+        if (camera.lens->verdict == calib::Verdict::kFail && !options.keeps_failed) continue;
         const std::string problem = calib::SaveLens(*camera.lens, options.command, camera.out);
         if (!problem.empty()) return problem;
     }

@@ -14,6 +14,7 @@ struct IntrinsicsOptions {
     algo::CameraModel::Kind model = algo::CameraModel::Kind::kKannalaBrandt4;
     std::filesystem::path out{};  ///< lens file, or the folder of those of all cameras; empty: none
     std::filesystem::path json{};  ///< all figures; empty: none
+    bool keeps_failed = false;     ///< writes a lens file also with the verdict fail
     std::string command{};         ///< for the lens file
 };
 

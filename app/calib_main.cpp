@@ -5,6 +5,7 @@
 #include "app/calib_formats_arguments.hpp"
 #include "app/calib_intrinsics_verb.hpp"
 #include "app/calib_report_verb.hpp"
+#include "app/calib_unit_verb.hpp"
 
 namespace {
 
@@ -42,18 +43,9 @@ CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
     verb.add_option(
         "--out", options.out,
         "lens file to write, with the verdict in it; with --folder the folder of the files");
+    verb.add_flag("--keep-failed", options.keeps_failed,
+                  "write the lens file also when the verdict is fail");
     verb.add_option("--json", options.json, "file for all figures");
-    return verb;
-}
-
-CLI::App& AddReport(CLI::App& app, CalibReportOptions& options) {
-    CLI::App& verb = *app.add_subcommand(
-        "report",
-        "Make one page of the figures that other verbs have written with --json.\n"
-        "Example: hitchview-calib report --json front.json rear.json tractor.json --out "
-        "report.html");
-    verb.add_option("--json", options.json, "files of intrinsics, unit, verify")->required();
-    verb.add_option("--out", options.out, "HTML page to write")->required();
     return verb;
 }
 
@@ -70,15 +62,18 @@ int main(int argc, char** argv) {
     CalibExportOptions exported;
     const CLI::App& export_verb = AddCalibExport(app, exported);
     CalibReportOptions report;
-    const CLI::App& report_verb = AddReport(app, report);
+    const CLI::App& report_verb = AddCalibReport(app, report);
+    UnitOptions unit;
+    const CLI::App& unit_verb = AddUnit(app, unit);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : kWrongUse;
     }
-    intrinsics.command = imported.command = report.command = CommandLine(argc, argv);
+    intrinsics.command = imported.command = report.command = unit.command = CommandLine(argc, argv);
     if (import_verb.parsed()) return CalibImportVerb(imported);
     if (export_verb.parsed()) return CalibExportVerb(exported);
     if (report_verb.parsed()) return CalibReportVerb(report);
+    if (unit_verb.parsed()) return UnitVerb(unit);
     return IntrinsicsVerb(intrinsics);
 }

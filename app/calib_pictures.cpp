@@ -12,20 +12,11 @@
 #include <thread>
 
 #include "calib/board_blur.hpp"
-#include "calib/board_extent.hpp"
 #include "calib/board_detector.hpp"
+#include "calib/board_extent.hpp"
 
 namespace hitchview::app {
 namespace {
-
-std::vector<std::string> Files(const std::string& pattern) {
-    glob_t found{};
-    std::vector<std::string> files;
-    if (glob(pattern.c_str(), 0, nullptr, &found) == 0)
-        files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
-    globfree(&found);
-    return files;
-}
 
 /// What one picture shows.
 struct Look {
@@ -70,13 +61,22 @@ std::string Text(const cv::Size& size_px) {
 
 }  // namespace
 
+std::vector<std::string> FilesLike(const std::string& pattern) {
+    glob_t found{};
+    std::vector<std::string> files;
+    if (glob(pattern.c_str(), 0, nullptr, &found) == 0)
+        files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    globfree(&found);
+    return files;
+}
+
 void ShowProgress(const char* what, std::size_t done, std::size_t all, const char* of_what) {
     if (isatty(STDERR_FILENO) == 0) return;
     std::fprintf(stderr, "\r%s %zu of %zu %s%s", what, done, all, of_what, done == all ? "\n" : "");
 }
 
 hal::Checked<BoardPictures> FindBoards(const std::string& pattern, const calib::Board& board) {
-    const std::vector<std::string> files = Files(pattern);
+    const std::vector<std::string> files = FilesLike(pattern);
     if (files.empty()) return "no file is named " + pattern;
     std::vector<Look> looks = LookAtAll(files, board);
     BoardPictures found{.pictures = files.size()};

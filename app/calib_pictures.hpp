@@ -17,6 +17,9 @@ struct BoardPictures {
     std::size_t larger_boards = 0;  ///< of these, those whose board goes on beyond its corners
 };
 
+/// Files that a pattern of the shell names, by name.
+std::vector<std::string> FilesLike(const std::string& pattern);
+
 /// Where a person sits before it: one line on stderr that says how far it is.
 void ShowProgress(const char* what, std::size_t done, std::size_t all, const char* of_what);
 

@@ -24,17 +24,26 @@ std::optional<std::vector<Vector3d>> Directions(const CameraModel& model,
     return directions;
 }
 
-/// Rays on the plane in front of a camera that is turned to look at the middle of them; false where
-/// they spread over half a sphere.
-bool OnPlane(const std::vector<Vector3d>& directions, const Eigen::Quaterniond& q_turned_camera,
-             std::vector<cv::Point2d>& points) {
-    constexpr double kLeastDepth = 0.05;
-    for (const Vector3d& direction : directions) {
-        const Vector3d turned = q_turned_camera * direction;
-        if (turned.z() < kLeastDepth) return false;
-        points.emplace_back(turned.x() / turned.z(), turned.y() / turned.z());
+/// Corners as a pinhole camera sees them that was turned to look at their middle.
+struct TurnedView {
+    std::vector<cv::Point3d> board_m;
+    std::vector<cv::Point2d> seen;
+};
+
+/// Without those at the edge of half a sphere and beyond, which no pinhole camera sees.
+TurnedView Turned(const std::vector<Vector3d>& directions,
+                  const Eigen::Quaterniond& q_turned_camera, std::span<const Vector3d> board_m,
+                  const SeenCorners& corners) {
+    constexpr double kLeastDepth = 0.1;
+    TurnedView view;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Vector3d turned = q_turned_camera * directions[i];
+        if (turned.z() < kLeastDepth) continue;
+        const Vector3d& at_m = board_m[static_cast<std::size_t>(corners[i].index)];
+        view.board_m.emplace_back(at_m.x(), at_m.y(), 0);
+        view.seen.emplace_back(turned.x() / turned.z(), turned.y() / turned.z());
     }
-    return true;
+    return view;
 }
 
 }  // namespace
@@ -46,17 +55,13 @@ std::optional<Isometry3d> RoughPlace(const CameraModel& model, std::span<const V
     Vector3d middle = Vector3d::Zero();
     for (const Vector3d& direction : *directions) middle += direction;
     const auto q_turned_camera = Eigen::Quaterniond::FromTwoVectors(middle, Vector3d::UnitZ());
-    std::vector<cv::Point2d> seen;
-    if (!OnPlane(*directions, q_turned_camera, seen)) return std::nullopt;
-    std::vector<cv::Point3d> flat;
-    for (const SeenCorner& corner : corners) {
-        const Vector3d& at_m = board_m[static_cast<std::size_t>(corner.index)];
-        flat.emplace_back(at_m.x(), at_m.y(), 0);
-    }
+    constexpr std::size_t kFewest = 4;
+    const TurnedView view = Turned(*directions, q_turned_camera, board_m, corners);
+    if (view.seen.size() < kFewest) return std::nullopt;
     cv::Vec3d rotation;
     cv::Vec3d translation;
-    if (!cv::solvePnP(flat, seen, cv::Matx33d::eye(), cv::noArray(), rotation, translation, false,
-                      cv::SOLVEPNP_IPPE)) {
+    if (!cv::solvePnP(view.board_m, view.seen, cv::Matx33d::eye(), cv::noArray(), rotation,
+                      translation, false, cv::SOLVEPNP_IPPE)) {
         return std::nullopt;
     }
     const Vector3d axis(rotation[0], rotation[1], rotation[2]);
