@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "app/calib_arguments.hpp"
 #include "app/calib_formats_arguments.hpp"
+#include "app/calib_intrinsics_verb.hpp"
+#include "app/calib_report_verb.hpp"
 #include "app/calib_unit_verb.hpp"
 
 namespace {
@@ -41,7 +42,7 @@ int main(int argc, char** argv) {
     const std::vector<Verb> verbs{
         {AddIntrinsics(app, intrinsics), [&] { return IntrinsicsVerb(intrinsics); }},
         {AddUnit(app, unit), [&] { return UnitVerb(unit); }},
-        {AddReport(app, report), [&] { return CalibReportVerb(report); }},
+        {AddCalibReport(app, report), [&] { return CalibReportVerb(report); }},
         {AddCalibImport(app, imported), [&] { return CalibImportVerb(imported); }},
         {AddCalibExport(app, exported), [&] { return CalibExportVerb(exported); }},
     };
