@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 
@@ -17,6 +18,8 @@ struct IntrinsicsOptions {
     bool keeps_failed = false;     ///< writes a lens file also with the verdict fail
     std::string command{};         ///< for the lens file
 };
+
+CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options);
 
 /// Measures lenses from pictures of a board. 0: they may be driven with; 1: one may not, the
 /// reasons are told; 2: wrong use, no picture, no board in any; 3: a file could not be written.

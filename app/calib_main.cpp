@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "app/calib_arguments.hpp"
 #include "app/calib_formats_arguments.hpp"
 #include "app/calib_hitch_verb.hpp"
+#include "app/calib_intrinsics_verb.hpp"
+#include "app/calib_report_verb.hpp"
 #include "app/calib_unit_verb.hpp"
 
 namespace {
@@ -45,7 +46,7 @@ int main(int argc, char** argv) {
         {AddIntrinsics(app, intrinsics), [&] { return IntrinsicsVerb(intrinsics); }},
         {AddUnit(app, unit), [&] { return UnitVerb(unit); }},
         {AddHitch(app, hitch), [&] { return HitchVerb(hitch); }},
-        {AddReport(app, report), [&] { return CalibReportVerb(report); }},
+        {AddCalibReport(app, report), [&] { return CalibReportVerb(report); }},
         {AddCalibImport(app, imported), [&] { return CalibImportVerb(imported); }},
         {AddCalibExport(app, exported), [&] { return CalibExportVerb(exported); }},
     };

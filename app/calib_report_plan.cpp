@@ -40,9 +40,7 @@ std::vector<Placed> PlacedCameras(const json& cameras) {
 struct Ground {
     double left_m = 0, right_m = 0, low_m = 0, high_m = 0;
 
-    [[nodiscard]] double scale() const {
-        return std::min(kWidth / (right_m - left_m), kLargestHeight / (high_m - low_m));
-    }
+    [[nodiscard]] double scale() const { return kWidth / (right_m - left_m); }
     [[nodiscard]] double X(double x_m) const { return (x_m - left_m) * scale(); }
     [[nodiscard]] double Y(double y_m) const { return (high_m - y_m) * scale(); }
 };
@@ -55,8 +53,14 @@ Ground Around(const std::vector<Placed>& cameras) {
         ground.low_m = std::min(ground.low_m, camera.y_m);
         ground.high_m = std::max(ground.high_m, camera.y_m);
     }
-    return {ground.left_m - kMargin_m, ground.right_m + kMargin_m, ground.low_m - kMargin_m,
-            ground.high_m + kMargin_m};
+    ground = {ground.left_m - kMargin_m, ground.right_m + kMargin_m, ground.low_m - kMargin_m,
+              ground.high_m + kMargin_m};
+    // As wide as the page, so that letters are as large as elsewhere.
+    const double width_m = (ground.high_m - ground.low_m) * kWidth / kLargestHeight;
+    const double more_m = std::max(0.0, width_m - (ground.right_m - ground.left_m));
+    ground.left_m -= more_m / 2;
+    ground.right_m += more_m / 2;
+    return ground;
 }
 
 std::string CameraSign(const Placed& camera, const Ground& ground) {
@@ -82,14 +86,13 @@ std::string PlanView(const json& cameras) {
     if (placed.empty()) return kNotInFile;
     const Ground ground = Around(placed);
     const double height = (ground.high_m - ground.low_m) * ground.scale();
-    const double width = (ground.right_m - ground.left_m) * ground.scale();
     std::string svg = SvgLine(ground.X(0) - 8, ground.Y(0), ground.X(0) + 8, ground.Y(0), "mark") +
                       SvgLine(ground.X(0), ground.Y(0) - 8, ground.X(0), ground.Y(0) + 8, "mark") +
                       SvgText(ground.X(0) + 6, ground.Y(0) + 18, "start", "hitch point") +
                       SvgLine(12, height - 12, 12 + ground.scale(), height - 12, "ruler") +
                       SvgText(12, height - 18, "start", "1 m");
     for (const Placed& camera : placed) svg += CameraSign(camera, ground);
-    return "<figure class=\"map\">" + Svg(width, height, "Cameras from above", svg) +
+    return "<figure class=\"map\">" + Svg(kWidth, height, "Cameras from above", svg) +
            "<figcaption>From above; the unit's front is to the right.</figcaption></figure>";
 }
 

@@ -22,7 +22,8 @@ std::vector<std::string> WithIntervals(const json& camera, const std::string& va
     std::vector<std::string> texts(3, "not in this file");
     for (std::size_t i = 0; i < 3 && numbers.size() == 3; ++i) {
         texts[i] = Number(numbers[i], decimals);
-        if (sigmas.size() == 3) texts[i] += "\u00a0\u00b1\u00a0" + Number(k95 * sigmas[i], decimals);
+        if (sigmas.size() == 3)
+            texts[i] += "\u00a0\u00b1\u00a0" + Number(k95 * sigmas[i], decimals);
     }
     return texts;
 }
@@ -46,18 +47,31 @@ std::string PlaceTable(const json& cameras) {
         rows);
 }
 
-std::string SeamTable(const json& neighbours) {
-    if (!neighbours.is_array() || neighbours.empty()) return kNotInFile;
-    const auto text = [](const json& seam, const char* key) {
-        const auto number = NumberIn(seam, key);
-        return number ? Short(*number, 3) : std::string("not in this file");
-    };
+/// `front - left`.
+std::string PairName(const json& pair) {
+    const std::vector<std::string> cameras = TextsOf(Part(pair, "cameras"));
+    return cameras.size() == 2 ? cameras[0] + " - " + cameras[1] : "";
+}
+
+std::string FarTable(const json& pairs) {
+    if (!pairs.is_array() || pairs.empty()) return kNotInFile;
     std::string rows;
-    for (const json& seam : neighbours)
-        rows += HtmlRow({TextIn(seam, "a") + " - " + TextIn(seam, "b"), text(seam, "before_px"),
-                         text(seam, "after_px")});
-    return HtmlTable("Misalignment of neighbours far away", {"cameras", "before px", "after px"},
-                     rows);
+    for (const json& pair : pairs) {
+        std::vector<std::string> texts{PairName(pair)};
+        for (const char* const key : {"before_px", "after_px", "matches"}) {
+            const auto number = NumberIn(pair, key);
+            texts.push_back(number ? Short(*number, 3) : "not in this file");
+        }
+        rows += HtmlRow(texts);
+    }
+    return HtmlTable("How far neighbours disagree on what is far away, in a panorama of 4096 px",
+                     {"cameras", "with targets alone, px", "now, px", "matches"}, rows);
+}
+
+std::string Notes(const json& notes) {
+    std::string html;
+    for (const std::string& note : TextsOf(notes)) html += "<li>" + Escaped(note) + "</li>";
+    return html.empty() ? "" : "<ul class=\"lead\">" + html + "</ul>";
 }
 
 /// What the file names at any level under `view_png`, `before_png` and `after_png`.
@@ -75,8 +89,7 @@ std::string Pictures(const json& unit, const std::filesystem::path& folder) {
     add(unit, "");
     add(Part(unit, "pictures"), "");
     for (const auto& [name, camera] : NamedParts(Part(unit, "cameras"))) add(*camera, name);
-    for (const auto& [name, seam] : NamedParts(Part(unit, "neighbours")))
-        add(*seam, TextIn(*seam, "a") + " - " + TextIn(*seam, "b"));
+    for (const auto& [name, pair] : NamedParts(Part(unit, "far"))) add(*pair, PairName(*pair));
     return html.empty() ? kNotInFile : "<div class=\"pictures\">" + html + "</div>";
 }
 
@@ -85,15 +98,16 @@ std::string Pictures(const json& unit, const std::filesystem::path& folder) {
 std::string UnitReport(const json& unit, const std::filesystem::path& folder) {
     return "<h4>Places</h4>" + PlaceTable(Part(unit, "cameras")) + "<h4>From above</h4>" +
            PlanView(Part(unit, "cameras")) + "<h4>Who saw what</h4>" +
-           SightingGraph(Part(unit, "sightings")) + "<h4>Seams</h4>" +
-           SeamTable(Part(unit, "neighbours")) + "<h4>Pictures</h4>" + Pictures(unit, folder);
+           SightingGraph(Part(unit, "sightings")) + Notes(Part(unit, "notes")) +
+           "<h4>Far away</h4>" + FarTable(Part(unit, "far")) + "<h4>Pictures</h4>" +
+           Pictures(unit, folder);
 }
 
 std::string UnitSummary(const json& unit) {
     const std::size_t cameras = NamedParts(Part(unit, "cameras")).size();
-    const auto rms_px = NumberIn(unit, "rms_px");
+    const auto sigma_px = NumberIn(unit, "sigma_px");
     return std::to_string(cameras) + " cameras" +
-           (rms_px ? ", " + Short(*rms_px, 3) + " px" : std::string());
+           (sigma_px ? ", corners found to " + Short(*sigma_px, 3) + " px" : std::string());
 }
 
 }  // namespace hitchview::app

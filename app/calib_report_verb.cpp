@@ -55,6 +55,17 @@ std::string Now() {
 
 }  // namespace
 
+CLI::App& AddCalibReport(CLI::App& app, CalibReportOptions& options) {
+    CLI::App& verb = *app.add_subcommand(
+        "report",
+        "Make one page of the figures that other verbs have written with --json.\n"
+        "Example: hitchview-calib report --json front.json rear.json tractor.json --out "
+        "report.html");
+    verb.add_option("--json", options.json, "files of intrinsics, unit, verify")->required();
+    verb.add_option("--out", options.out, "HTML page to write")->required();
+    return verb;
+}
+
 int CalibReportVerb(const CalibReportOptions& options) {
     std::vector<ReportSource> sources;
     for (const std::filesystem::path& file : options.json) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@ struct CalibReportOptions {
     std::filesystem::path out{};
     std::string command{};
 };
+
+/// The verb `report` with its options.
+CLI::App& AddCalibReport(CLI::App& app, CalibReportOptions& options);
 
 /// Writes one HTML page from the figures of other verbs. 0: done; 2: a file is no JSON of these
 /// verbs; 3: the page cannot be written. Verdicts do not change the exit code.

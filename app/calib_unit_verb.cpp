@@ -58,7 +58,8 @@ std::string Refine(Material& material) {
                                 cv::IMREAD_GRAYSCALE);
     if (!shown) return shown.error();
     const calib::UnitPlaces before = findings.solution.places;
-    problem.far_matches = calib::FindFarMatches(problem.cameras, before.T_unit_camera, shown.value());
+    problem.far_matches =
+        calib::FindFarMatches(problem.cameras, before.T_unit_camera, shown.value());
     auto refined = calib::SolveUnitFrom(before, problem, findings.graph);
     if (!refined) return "what is far away does not fit the targets";
     findings.far.before = calib::Misalignments(problem, before.T_unit_camera);

@@ -34,14 +34,15 @@ json Lens() {
 
 json Unit() {
     return json::parse(R"({
-        "verb": "unit", "unit": "tractor", "verdict": "pass", "rms_px": 0.3,
+        "verb": "unit", "unit": "tractor", "verdict": "pass", "sigma_px": 0.3,
+        "notes": ["left does not see gate"],
         "cameras": {"front": {"position_m": [3, 0, 2], "rpy_deg": [0, 12, 0],
                               "position_sigma_m": [0.001, 0.001, 0.002],
                               "rpy_sigma_deg": [0.01, 0.01, 0.01], "rms_px": 0.2},
                     "left": {"position_m": [1, 1, 2], "rpy_deg": [0, 0, 90]}},
         "sightings": [{"camera": "front", "target": "gate", "rms_px": 0.2, "outlier": false},
                       {"camera": "left", "target": "gate", "rms_px": 4.5, "outlier": true}],
-        "neighbours": [{"a": "front", "b": "left", "before_px": 3.25, "after_px": 0.5,
+        "far": [{"cameras": ["front", "left"], "matches": 80, "before_px": 3.25, "after_px": 0.5,
                         "before_png": "before.png", "after_png": "after.png"}]})");
 }
 
@@ -81,7 +82,7 @@ TEST(CalibReportTest, FiguresAreShownWithTheirIntervals) {
     const std::string unit = Page(Unit());
     EXPECT_THAT(unit, HasSubstr("<td>3.0000\u00a0\u00b1\u00a00.0020</td>"));
     EXPECT_THAT(unit, HasSubstr("class=\"edge poor\""));
-    EXPECT_THAT(unit, HasSubstr("<td>3.25</td><td>0.5</td>"));
+    EXPECT_THAT(unit, HasSubstr("<td>front - left</td><td>3.25</td><td>0.5</td>"));
     EXPECT_THAT(Page(Verify()), HasSubstr("1 of 2 checks good"));
 }
 
