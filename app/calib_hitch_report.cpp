@@ -65,7 +65,8 @@ json HitchJson(const calib::HitchSolution& solution, const Reasons& reasons) {
             {"straight_sigma_deg", straight ? json(*straight / kDegree) : json(nullptr)},
             {"rms_px", solution.rms_px},
             {"sigma_px", solution.sigma_px},
-            {"shots", shots}};
+            {"shots", shots},
+            {"loose_shots", solution.loose_shots}};
 }
 
 void PrintHitch(const calib::HitchSolution& solution, const Reasons& reasons) {
@@ -84,6 +85,9 @@ void PrintHitch(const calib::HitchSolution& solution, const Reasons& reasons) {
                     shot.shot.c_str(), shot.yaw_rad / kDegree,
                     kNinetyFivePercent * shot.sigma_rad / kDegree, shot.pitch_rad / kDegree,
                     shot.roll_rad / kDegree);
+    for (const std::string& shot : solution.loose_shots)
+        std::printf("left out: shot %s, in which no targets link both units to the other shots\n",
+                    shot.c_str());
     std::printf("errors  %.3f px\n", solution.rms_px);
     PrintVerdict(reasons);
 }

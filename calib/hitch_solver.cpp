@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include "calib/hitch_adjustment.hpp"
 
@@ -75,6 +76,20 @@ void DescribeShots(const HitchPlaces& places, const MatrixXd& covariance, HitchS
     }
 }
 
+void DescribeRest(const HitchProblem& problem, const HitchPlaces& places, const Kept& kept,
+                  HitchSolution& solution) {
+    const HitchPredictor predictor(problem, places);
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        if (predictor.ShotOf(problem.sightings[i]) &&
+            2 * std::ranges::count(kept[i], true) < std::ssize(kept[i]))
+            solution.outliers.push_back(i);
+    }
+    std::set<std::string> loose;
+    for (const Sighting& sighting : problem.sightings) loose.insert(sighting.shot);
+    for (const std::string& shot : places.shots) loose.erase(shot);
+    solution.loose_shots.assign(loose.begin(), loose.end());
+}
+
 /// Yaw 0 is the mean of the straight shots.
 void Straighten(const HitchProblem& problem, HitchSolution& solution) {
     double sum = 0;
@@ -120,6 +135,7 @@ std::optional<HitchSolution> SolveHitch(const HitchProblem& problem) {
     solution.height_is_measured = information->height_is_measured;
     solution.rms_px = Rms(problem, *places, kept);
     DescribeShots(*places, information->covariance, solution);
+    DescribeRest(problem, *places, kept, solution);
     Straighten(problem, solution);
     return solution;
 }

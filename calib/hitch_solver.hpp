@@ -43,6 +43,10 @@ struct HitchSolution {
     double straight_rad = 0;  ///< yaw between the given frames when the units are in line
     std::optional<double> straight_sigma_rad{};  ///< empty: no straight shot, straight_rad is 0
     std::vector<ShotArticulation> shots{};
+    /// Shots that are not used: no chain of targets links both units in them to the other shots.
+    std::vector<std::string> loose_shots{};
+    /// Indices of sightings of which fewer than half the corners fit.
+    std::vector<std::size_t> outliers{};
     double sigma_px = 0;
     double rms_px = 0;  ///< of the corners that count
 };
@@ -57,6 +61,7 @@ std::optional<HitchSolution> SolveHitch(const HitchProblem& problem);
 ///  - fewer than 3 shots, or articulations that spread over less than 20 degrees;
 ///  - no straight shot, or straight shots that are more than 0.25 degrees from their mean;
 ///  - a standard deviation over 5 mm along x or y or, of the straight yaw, over 0.05 degrees;
+///  - a sighting of which fewer than half the corners fit: a target, or the vehicle, moved;
 ///  - corners that are off by more than 1 px (root mean square).
 std::vector<std::string> JudgeHitch(const HitchProblem& problem, const HitchSolution& solution);
 

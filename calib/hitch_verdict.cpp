@@ -54,6 +54,17 @@ void JudgeStraight(const HitchProblem& problem, const HitchSolution& solution, R
             *solution.straight_sigma_rad / kDegree, kMostSigma_rad / kDegree));
 }
 
+void JudgeSightings(const HitchProblem& problem, const HitchSolution& solution, Reasons& reasons) {
+    for (const std::size_t i : solution.outliers) {
+        const Sighting& sighting = problem.sightings[i];
+        reasons.push_back(Sentence(
+            "%s in shot %s of %s does not fit the others: look at the picture, leave it out if the "
+            "target or the vehicle moved",
+            problem.targets[sighting.target].name.c_str(), sighting.shot.c_str(),
+            problem.names[sighting.camera].c_str()));
+    }
+}
+
 void JudgePoint(const HitchSolution& solution, Reasons& reasons) {
     const double sigma_m = std::max(solution.sigma_tractor_m.head<2>().maxCoeff(),
                                     solution.sigma_trailer_m.head<2>().maxCoeff());
@@ -75,6 +86,7 @@ std::vector<std::string> JudgeHitch(const HitchProblem& problem, const HitchSolu
     Reasons reasons;
     JudgeShots(solution, reasons);
     JudgeStraight(problem, solution, reasons);
+    JudgeSightings(problem, solution, reasons);
     JudgePoint(solution, reasons);
     return reasons;
 }
