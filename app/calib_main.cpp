@@ -3,6 +3,7 @@
 #include <string>
 
 #include "app/calib_intrinsics_verb.hpp"
+#include "app/calib_target_verb.hpp"
 
 namespace {
 
@@ -39,6 +40,31 @@ CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
     return verb;
 }
 
+CLI::App& AddTarget(CLI::App& app, TargetOptions& options) {
+    using hitchview::calib::Pattern;
+    CLI::App& verb = *app.add_subcommand(
+        "target",
+        "Print a board: a sheet at its exact size, with a bar to measure after printing.\n"
+        "What is not given is chosen so that the paper is filled.\n"
+        "Example: hitchview-calib target --pattern charuco --paper a2 --out sheet.pdf "
+        "--board-out board.yaml");
+    SheetRequest& sheet = options.sheet;
+    verb.add_option("--pattern", sheet.pattern, "checkerboard, charuco or tags (charuco)")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, Pattern>{{"checkerboard", Pattern::kCheckerboard},
+                                           {"charuco", Pattern::kCharuco},
+                                           {"tags", Pattern::kTags}}));
+    verb.add_option("--columns", sheet.columns, "inner corners in a row, or tags");
+    verb.add_option("--rows", sheet.rows, "inner corners in a column, or tags");
+    verb.add_option("--square-m", sheet.square_m, "side of a square; from tag to tag");
+    verb.add_option("--tag-m", sheet.tag_m, "side of a tag's black frame");
+    verb.add_option("--first-tag", sheet.first_tag, "number of the first tag (0)");
+    verb.add_option("--paper", sheet.paper, "a4 to a0, or WIDTHxHEIGHT in mm (a4)");
+    verb.add_option("--out", options.out, "sheet to write, .pdf or .svg")->required();
+    verb.add_option("--board-out", options.board_out, "board file to write, for --board");
+    return verb;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -47,11 +73,14 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     IntrinsicsOptions intrinsics;
     AddIntrinsics(app, intrinsics);
+    TargetOptions target;
+    const CLI::App& target_verb = AddTarget(app, target);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : kWrongUse;
     }
+    if (target_verb.parsed()) return TargetVerb(target);
     intrinsics.command = CommandLine(argc, argv);
     return IntrinsicsVerb(intrinsics);
 }

@@ -16,7 +16,7 @@ enum class Pattern {
     /// will do. The top left square is black.
     kCharuco,
     /// Tags in a grid, with a small square between the corners of four: a part will do, also far
-    /// away or aslant. The layout of kalibr's aprilgrid.
+    /// away or aslant. Like kalibr's aprilgrid, but its frames are two modules wide.
     kTags,
 };
 

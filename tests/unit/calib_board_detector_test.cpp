@@ -77,7 +77,7 @@ class DetectionTest : public testing::TestWithParam<std::tuple<Board, CameraMode
         const auto& [board, lens] = GetParam();
         const BoardScene scene(lens);
         Errors errors;
-        for (const Vector2d& at : {Vector2d(480, 300), {260, 170}, {700, 400}, {480, 160}}) {
+        for (const Vector2d& at : {Vector2d(480, 300), {280, 190}, {680, 390}, {480, 200}}) {
             const double tilt_rad = 0.6 * std::sin(at.x());
             const PlacedBoard placed{board, Held(lens, board, at, 0.9, tilt_rad, at.y(), 0.2)};
             const cv::Mat1b picture =
