@@ -2,6 +2,7 @@
 #include <map>
 #include <string>
 
+#include "app/calib_capture_verb.hpp"
 #include "app/calib_intrinsics_verb.hpp"
 #include "app/calib_target_verb.hpp"
 
@@ -65,6 +66,24 @@ CLI::App& AddTarget(CLI::App& app, TargetOptions& options) {
     return verb;
 }
 
+CLI::App& AddCapture(CLI::App& app, CaptureOptions& options) {
+    CLI::App& verb = *app.add_subcommand(
+        "capture",
+        "Choose pictures of a board that is held before the cameras, and say what to do next.\n"
+        "Exit code 0: every camera has enough, 1: not, and what is missing.\n"
+        "Example: hitchview-calib capture --rig rig.yaml --board board.yaml --out pictures");
+    verb.add_option("--board", options.board, "board file, or COLSxROWS,SQUARE_M")->required();
+    verb.add_option("--rig", options.rig, "rig file: all its cameras at once");
+    verb.add_option("--video", options.video, "a film of one camera");
+    verb.add_option("--images", options.images, "pictures of one camera, a pattern in quotes");
+    verb.add_option("--camera", options.camera, "its name; with --rig, this camera only");
+    verb.add_option("--views", options.views, "of each camera, at least (20)")
+        ->check(CLI::Range(6, 200));
+    verb.add_option("--out", options.out, "folder for a new folder of each camera")->required();
+    verb.add_option("--json", options.json, "file for all figures");
+    return verb;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -73,6 +92,8 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     IntrinsicsOptions intrinsics;
     AddIntrinsics(app, intrinsics);
+    CaptureOptions capture;
+    const CLI::App& capture_verb = AddCapture(app, capture);
     TargetOptions target;
     const CLI::App& target_verb = AddTarget(app, target);
     try {
@@ -80,6 +101,7 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : kWrongUse;
     }
+    if (capture_verb.parsed()) return CaptureVerb(capture);
     if (target_verb.parsed()) return TargetVerb(target);
     intrinsics.command = CommandLine(argc, argv);
     return IntrinsicsVerb(intrinsics);

@@ -103,7 +103,7 @@ int RowsThatFit(const SheetRequest& request, int columns, double square_m,
     const int fewest = request.pattern == Pattern::kTags ? 1 : 3;
     const auto good = [&] {
         return Fits(Described(request, columns, rows, square_m), paper_mm) &&
-               (request.pattern == Pattern::kTags || rows % 2 != columns % 2);
+               (request.pattern != Pattern::kCheckerboard || rows % 2 != columns % 2);
     };
     while (rows > fewest && !good()) --rows;
     return rows;
