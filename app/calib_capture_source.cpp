@@ -8,6 +8,8 @@
 #include <opencv2/videoio.hpp>
 
 #include "app/board.hpp"
+#include "calib/board_pattern.hpp"
+#include "drivers/simulated_sheet.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -87,6 +89,16 @@ cv::Mat1b GreyOf(const hal::FrameView& view) {
     return grey;
 }
 
+/// The board as it is printed, with its white margin.
+drivers::SheetOptions SheetOf(const calib::Board& board) {
+    const calib::BoardRectangle area = calib::PatternArea(board);
+    const Eigen::Vector2d margin_m = Eigen::Vector2d::Constant(calib::WhiteMargin_m(board));
+    drivers::SheetOptions sheet{.paper = {area.from_m - margin_m, area.to_m + margin_m}};
+    for (const calib::BoardRectangle& dark : calib::DarkRectangles(board))
+        sheet.dark.push_back({dark.from_m, dark.to_m});
+    return sheet;
+}
+
 class Rig final : public CaptureSource {
  public:
     struct Place {
@@ -137,7 +149,8 @@ hal::Checked<std::unique_ptr<CaptureSource>> OpenVideo(const std::string& file,
 }
 
 hal::Checked<std::unique_ptr<CaptureSource>> OpenRig(const std::string& file,
-                                                     const std::string& only) {
+                                                     const std::string& only,
+                                                     const calib::Board& held) {
     const auto config = LoadRigConfig(file);
     if (!config) return config.error();
     std::vector<std::string> cameras;
@@ -151,7 +164,8 @@ hal::Checked<std::unique_ptr<CaptureSource>> OpenRig(const std::string& file,
         }
     }
     if (cameras.empty()) return file + ": has no camera " + only;
-    auto board = Board::Open(config.value(), {});
+    const drivers::SheetOptions sheet = SheetOf(held);
+    auto board = Board::Open(config.value(), {.held_sheet = &sheet});
     if (!board) return board.error();
     return std::unique_ptr<CaptureSource>(
         std::make_unique<Rig>(std::move(board.value()), std::move(cameras), std::move(places)));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/board.hpp"
 #include "hal/result.hpp"
 
 namespace hitchview::app {
@@ -29,8 +30,10 @@ hal::Checked<std::unique_ptr<CaptureSource>> OpenPictures(const std::string& pat
 /// A film, as one camera.
 hal::Checked<std::unique_ptr<CaptureSource>> OpenVideo(const std::string& file,
                                                        const std::string& camera);
-/// The cameras of a rig file: real, recorded or simulated. `only`: one of them; empty: all.
+/// The cameras of a rig file: real, recorded or simulated. `only`: one of them; empty: all. Before
+/// simulated ones somebody holds `board`.
 hal::Checked<std::unique_ptr<CaptureSource>> OpenRig(const std::string& file,
-                                                     const std::string& only);
+                                                     const std::string& only,
+                                                     const calib::Board& board);
 
 }  // namespace hitchview::app

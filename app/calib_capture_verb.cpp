@@ -189,14 +189,15 @@ json Capture::Report() const {
     return {{"enough", enough()}, {"cameras", cameras}};
 }
 
-hal::Checked<std::unique_ptr<CaptureSource>> OpenSource(const CaptureOptions& options) {
+hal::Checked<std::unique_ptr<CaptureSource>> OpenSource(const CaptureOptions& options,
+                                                        const calib::Board& board) {
     const auto given = [](const std::string& option) { return option.empty() ? 0 : 1; };
     if (given(options.rig) + given(options.video) + given(options.images) != 1)
         return std::string("one of --rig, --video and --images must be given");
     const std::string name = options.camera.empty() ? "camera" : options.camera;
     if (!options.images.empty()) return OpenPictures(options.images, name);
     if (!options.video.empty()) return OpenVideo(options.video, name);
-    return OpenRig(options.rig, options.camera);
+    return OpenRig(options.rig, options.camera, board);
 }
 
 }  // namespace
@@ -204,7 +205,7 @@ hal::Checked<std::unique_ptr<CaptureSource>> OpenSource(const CaptureOptions& op
 int CaptureVerb(const CaptureOptions& options) {
     const calib::ParsedBoard board = calib::ReadBoard(options.board);
     if (!board.board) return Fail(kWrongUse, board.error);
-    auto source = OpenSource(options);
+    auto source = OpenSource(options, *board.board);
     if (!source) return Fail(kWrongUse, source.error());
     Capture capture(options, *board.board, std::move(source.value()));
     if (const std::string why = capture.MakeFolders(); !why.empty()) return Fail(kWrongUse, why);

@@ -18,7 +18,7 @@ struct ViewGoals {
     int near = 5;           ///< the board's size is at least `near_size` of the picture
     int far = 3;            ///< at most `far_size`
     double near_size = 0.45;
-    double far_size = 0.3;
+    double far_size = 0.35;
     double most_blur_px = 2.0;
     double most_motion_px = 2.0;  ///< between neighbouring frames, of 1280 px across; 0: any
 };
