@@ -16,13 +16,13 @@ bool LookAlike(const Board& a, const Board& b) {
 
 }  // namespace
 
-std::optional<Board> ReadSessionBoard(const YamlValue& value,
-                                      [[maybe_unused]] const std::filesystem::path& folder,
+std::optional<Board> ReadSessionBoard(const YamlValue& value, const std::filesystem::path& folder,
                                       std::span<const UnitTarget> others) {
     std::string text;
     value.Read(text);
     if (text.empty()) return std::nullopt;
-    const ParsedBoard parsed = ParseBoard(text);
+    const bool is_file = text.find(',') == std::string::npos;
+    const ParsedBoard parsed = is_file ? LoadBoard(folder / text) : ParseBoard(text);
     if (!parsed.board) {
         value.Refuse("a board: " + parsed.error);
         return std::nullopt;

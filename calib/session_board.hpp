@@ -9,7 +9,8 @@
 
 namespace hitchview::calib {
 
-/// A target's board in a session: `COLSxROWS,SQUARE_M`, or the name of a board file in `folder`.
+/// A target's board in a session: `COLSxROWS,SQUARE_M`, or the name of a board file (one without a
+/// comma), which starts in `folder`.
 /// Complains about one that cannot be read, or that could be mistaken for that of one of `others`
 /// in a picture; empty then.
 std::optional<Board> ReadSessionBoard(const YamlValue& value, const std::filesystem::path& folder,

@@ -25,17 +25,17 @@ constexpr int kWidth_px = 640;
 constexpr int kHeight_px = 360;
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A board, and where a camera has its middle. None is a part of another.
+/// A board, and where a camera has its middle.
 struct Hung {
     std::size_t camera;
-    int columns, rows;
     double x_px, y_px, distance_m;
 };
-constexpr std::array<Hung, 5> kHung{{{0, 13, 3, 330, 60, 4.0},
-                                     {0, 11, 4, 520, 230, 2.6},
-                                     {0, 10, 5, 135, 200, 2.8},  // seen by both
-                                     {1, 9, 6, 330, 70, 4.0},
-                                     {1, 8, 7, 150, 220, 2.6}}};
+constexpr std::array<Hung, 6> kHung{{{0, 330, 60, 3.5},
+                                     {0, 520, 230, 2.4},
+                                     {0, 135, 200, 2.8},  // seen by both
+                                     {1, 330, 70, 3.5},
+                                     {1, 150, 220, 2.4},
+                                     {1, 250, 290, 2.8}}};
 constexpr std::size_t kBoards = kHung.size();
 
 /// The first two cameras of the simulated tractor, boards before them, and what they see as files.
@@ -57,7 +57,14 @@ class CalibUnitTest : public testing::Test {
         }
 
         void Hang(const Hung& hung) {
-            const calib::Board board{.columns = hung.columns, .rows = hung.rows, .square_m = 0.11};
+            const calib::Board board{.columns = 3,
+                                     .rows = 2,
+                                     .square_m = 0.4,
+                                     .pattern = calib::Pattern::kTags,
+                                     .tag_m = 0.32,
+                                     .first_tag = 6 * static_cast<int>(boards.size())};
+            const std::string name = "t" + std::to_string(boards.size()) + ".yaml";
+            EXPECT_EQ(calib::SaveBoard(board, folder / name), "");
             const algo::CameraGeometry& camera = cameras[hung.camera].geometry;
             const double tilt_rad = hung.x_px < 200 ? -0.4 : 0.4;
             boards.push_back({board, camera.T_unit_camera *
@@ -102,14 +109,13 @@ class CalibUnitTest : public testing::Test {
 
     [[nodiscard]] std::string Target(std::size_t i, bool surveyed) const {
         const auto& [board, place] = yard_->boards[i];
-        std::string text = "  t" + std::to_string(i) + ": {board: '" +
-                           std::to_string(board.columns) + "x" + std::to_string(board.rows) +
-                           ",0.11'";
+        const std::string name = "t" + std::to_string(i);
+        const std::string text = "  " + name + ": {board: " + (yard_->folder / name) + ".yaml";
         if (!surveyed) return text + "}\n";
         const calib::BoardRectangle area = calib::PatternArea(board);
-        const auto corner = [&](const char* name, double x, double y) {
+        const auto corner = [&](const char* which, double x, double y) {
             const Vector3d p = place * Vector3d(x, y, 0);
-            return std::string("{corner: ") + name + ", at_m: [" + std::to_string(p.x()) + ", " +
+            return std::string("{corner: ") + which + ", at_m: [" + std::to_string(p.x()) + ", " +
                    std::to_string(p.y()) + ", " + std::to_string(p.z()) + "]}";
         };
         return text + ", sigma_m: 0.001, surveyed: [" +

@@ -79,7 +79,7 @@ TEST_F(UnitSessionTest, RefusesALensThatHasFailed) {
 TEST_F(UnitSessionTest, NamesEveryMistakeWithItsLine) {
     const auto loaded =
         Load("  left: {lens: none.yaml, pictures: 'a', yaw: 3}\n",
-             "  a b: {board: 9x6}\n"
+             "  a b: {board: none.yaml}\n"
              "  pole: {board: '9x6,0.1', moves: true, surveyed: [{corner: top, at_m: [1, 2, 3]}]}\n"
              "  post: {board: '8x5,0.1', surveyed: [{corner: top_left, at_m: [1, 2, 3]},\n"
              "                                      {corner: top_left, at_m: [1, 2, 3]}]}\n"
@@ -88,7 +88,7 @@ TEST_F(UnitSessionTest, NamesEveryMistakeWithItsLine) {
     EXPECT_THAT(loaded.error, HasSubstr(":5: cameras.left.yaw_deg is missing"));
     EXPECT_THAT(loaded.error, HasSubstr(":5: cameras.left.yaw is no key"));
     EXPECT_THAT(loaded.error, HasSubstr("named with letters, digits and _ only"));
-    EXPECT_THAT(loaded.error, HasSubstr("targets.a b.board is 9x6, must be a board"));
+    EXPECT_THAT(loaded.error, HasSubstr("targets.a b.board is none.yaml, must be a board"));
     EXPECT_THAT(loaded.error, HasSubstr("left out for a target that moves"));
     EXPECT_THAT(loaded.error, HasSubstr("corner is top, must be"));
     EXPECT_THAT(loaded.error, HasSubstr("must be given once"));
