@@ -8,6 +8,7 @@
 #include "app/calib_intrinsics_verb.hpp"
 #include "app/calib_report_verb.hpp"
 #include "app/calib_unit_verb.hpp"
+#include "app/calib_verify_verb.hpp"
 
 namespace {
 
@@ -35,13 +36,16 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     IntrinsicsOptions intrinsics;
     UnitOptions unit;
+    VerifyOptions verify;
     CalibReportOptions report;
     CalibImportOptions imported;
     CalibExportOptions exported;
-    intrinsics.command = unit.command = report.command = imported.command = CommandLine(argc, argv);
+    intrinsics.command = unit.command = verify.command = report.command = imported.command =
+        CommandLine(argc, argv);
     const std::vector<Verb> verbs{
         {AddIntrinsics(app, intrinsics), [&] { return IntrinsicsVerb(intrinsics); }},
         {AddUnit(app, unit), [&] { return UnitVerb(unit); }},
+        {AddVerify(app, verify), [&] { return VerifyVerb(verify); }},
         {AddCalibReport(app, report), [&] { return CalibReportVerb(report); }},
         {AddCalibImport(app, imported), [&] { return CalibImportVerb(imported); }},
         {AddCalibExport(app, exported), [&] { return CalibExportVerb(exported); }},
