@@ -79,7 +79,7 @@ TEST_F(CalibVerifyTest, ACameraThatWasTurnedIsNamed) {
     Turn("left_rear", 1.0, Eigen::Vector3d::UnitZ());
     const CalibOutcome outcome = Verify();
     EXPECT_EQ(outcome.code, 1) << outcome.text;
-    EXPECT_TRUE(outcome.Says("left_rear moved (turned by 1.")) << outcome.text;
+    EXPECT_TRUE(outcome.Says("left_rear moved (turned by some")) << outcome.text;
 }
 
 TEST_F(CalibVerifyTest, SwappedPicturesAreNotGood) {
