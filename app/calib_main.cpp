@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/calib_formats_arguments.hpp"
+#include "app/calib_hitch_verb.hpp"
 #include "app/calib_intrinsics_verb.hpp"
 #include "app/calib_report_verb.hpp"
 #include "app/calib_unit_verb.hpp"
@@ -36,15 +37,18 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     IntrinsicsOptions intrinsics;
     UnitOptions unit;
+    HitchOptions hitch;
     VerifyOptions verify;
     CalibReportOptions report;
     CalibImportOptions imported;
     CalibExportOptions exported;
-    intrinsics.command = unit.command = verify.command = report.command = imported.command =
-        CommandLine(argc, argv);
+    for (std::string* command : {&intrinsics.command, &unit.command, &hitch.command,
+                                 &verify.command, &report.command, &imported.command})
+        *command = CommandLine(argc, argv);
     const std::vector<Verb> verbs{
         {AddIntrinsics(app, intrinsics), [&] { return IntrinsicsVerb(intrinsics); }},
         {AddUnit(app, unit), [&] { return UnitVerb(unit); }},
+        {AddHitch(app, hitch), [&] { return HitchVerb(hitch); }},
         {AddVerify(app, verify), [&] { return VerifyVerb(verify); }},
         {AddCalibReport(app, report), [&] { return CalibReportVerb(report); }},
         {AddCalibImport(app, imported), [&] { return CalibImportVerb(imported); }},

@@ -1,6 +1,7 @@
 #include "calib/unit_changes.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <map>
 #include <numbers>

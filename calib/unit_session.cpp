@@ -1,12 +1,12 @@
 #include "calib/unit_session.hpp"
 
-#include <algorithm>
 #include <array>
 #include <numbers>
 
 #include "calib/board_pattern.hpp"
 #include "calib/lens_file.hpp"
 #include "calib/rig_calibration.hpp"
+#include "calib/session_board.hpp"
 #include "calib/yaml_map.hpp"
 
 namespace hitchview::calib {
@@ -31,14 +31,6 @@ Vector3d PlaceOf(const PrintedCorner& corner, const Board& board) {
     const BoardRectangle area = PatternArea(board);
     return {area.from_m.x() + corner.right * area.size_m().x(),
             area.from_m.y() + corner.down * area.size_m().y(), 0};
-}
-
-/// Whether a picture that shows one could as well show the other.
-bool LookAlike(const Board& a, const Board& b) {
-    const bool tags = a.pattern != Pattern::kCheckerboard && b.pattern != Pattern::kCheckerboard;
-    if (tags) return a.first_tag < b.first_tag + b.tags() && b.first_tag < a.first_tag + a.tags();
-    return a.pattern == b.pattern &&
-           std::minmax(a.columns, a.rows) == std::minmax(b.columns, b.rows);
 }
 
 Vector3d ReadPoint(const YamlValue& value) {
@@ -129,7 +121,8 @@ class SessionReader {
         YamlMap map = value.Map();
         UnitTarget target{.name = name};
         const YamlValue board = map.Required("board");
-        const bool known = ReadBoardInto(board, target.board);
+        const auto known = ReadSessionBoard(board, folder_, session_.problem.targets);
+        target.board = known.value_or(Board{});
         const YamlValue moves = map["moves"];
         if (moves.given()) moves.Read(target.moves);
         const YamlValue surveyed = map["surveyed"];
@@ -140,23 +133,8 @@ class SessionReader {
         if (sigma.given()) sigma.Read(Range<double>{0.0001, 0.5}, target.sigma_m);
         if (sigma.given() && !surveyed.given())
             sigma.Refuse("left out where no corner is surveyed");
-        for (const UnitTarget& other : session_.problem.targets) {
-            if (known && LookAlike(other.board, target.board))
-                board.Refuse("one that cannot be mistaken for that of " + other.name +
-                             ": other tags, or another number of squares");
-        }
         map.Finish();
         session_.problem.targets.push_back(std::move(target));
-    }
-
-    static bool ReadBoardInto(const YamlValue& value, Board& board) {
-        std::string text;
-        value.Read(text);
-        if (text.empty()) return false;
-        const ParsedBoard parsed = ParseBoard(text);
-        if (!parsed.board) value.Refuse("a board: " + parsed.error);
-        if (parsed.board) board = *parsed.board;
-        return parsed.board.has_value();
     }
 
     static void ReadSurvey(const YamlValue& value, UnitTarget& target) {

@@ -100,6 +100,36 @@ void DescribeSightings(const UnitProblem& problem, const CameraGraph& graph,
     }
 }
 
+/// Each round knows better which corners do not fit, and how large errors are. Empty: no solution.
+std::optional<UnitInformation> SolveWithoutOutliers(const UnitProblem& problem,
+                                                    const CameraGraph& graph,
+                                                    UnitSolution& solution) {
+    std::optional<UnitInformation> information;
+    for (int round = 0; round < kRounds; ++round) {
+        solution.kept = Within(kFarthest * solution.sigma_px, problem, graph, solution.places);
+        UnitAdjustment adjustment(problem, graph, solution.kept, {.sigma_px = solution.sigma_px},
+                                  solution.places);
+        if (!adjustment.Solve()) return std::nullopt;
+        information = adjustment.Information();
+        if (!information) return std::nullopt;
+        solution.sigma_px = std::max(kLeastSigma_px, solution.sigma_px * information->pixel_scale);
+    }
+    return information;
+}
+
+void DescribeCameras(const UnitProblem& problem, const UnitInformation& information,
+                     UnitSolution& solution) {
+    solution.prior_scale = information.prior_scale;
+    const double scale = std::max(1.0, information.prior_scale);
+    const auto unknowns = static_cast<Eigen::Index>(6 * problem.cameras.size());
+    solution.covariance = scale * scale * information.covariance.topLeftCorner(unknowns, unknowns);
+    for (std::size_t i = 0; i < problem.cameras.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(6 * i);
+        solution.cameras.push_back(
+            Describe(solution.places.T_unit_camera[i], solution.covariance.block<6, 6>(at, at)));
+    }
+}
+
 }  // namespace
 
 std::vector<double> CornerErrors(const UnitProblem& problem, const CameraGraph& graph,
@@ -137,30 +167,13 @@ std::optional<UnitSolution> SolveUnit(const UnitProblem& problem, const CameraGr
 std::optional<UnitSolution> SolveUnitFrom(const UnitPlaces& start, const UnitProblem& problem,
                                           const CameraGraph& graph) {
     UnitSolution solution{.places = start};
-    solution.kept = AllCorners(problem, graph);
-    UnitAdjustmentOptions options{.sigma_px = kFirstSigma_px, .robust = true};
-    if (!UnitAdjustment(problem, graph, solution.kept, options, solution.places).Solve())
-        return std::nullopt;
-    options = {.sigma_px = RobustSigma(problem, graph, solution.places)};
-    std::optional<UnitInformation> information;
-    for (int round = 0; round < kRounds; ++round) {
-        solution.kept = Within(kFarthest * options.sigma_px, problem, graph, solution.places);
-        UnitAdjustment adjustment(problem, graph, solution.kept, options, solution.places);
-        if (!adjustment.Solve()) return std::nullopt;
-        information = adjustment.Information();
-        if (!information) return std::nullopt;
-        options.sigma_px = std::max(kLeastSigma_px, options.sigma_px * information->pixel_scale);
-    }
-    solution.sigma_px = options.sigma_px;
-    solution.prior_scale = information->prior_scale;
-    const double scale = std::max(1.0, information->prior_scale);
-    const auto unknowns = static_cast<Eigen::Index>(6 * problem.cameras.size());
-    solution.covariance = scale * scale * information->covariance.topLeftCorner(unknowns, unknowns);
-    for (std::size_t i = 0; i < problem.cameras.size(); ++i) {
-        const auto at = static_cast<Eigen::Index>(6 * i);
-        solution.cameras.push_back(
-            Describe(solution.places.T_unit_camera[i], solution.covariance.block<6, 6>(at, at)));
-    }
+    const KeptCorners all = AllCorners(problem, graph);
+    const UnitAdjustmentOptions robust{.sigma_px = kFirstSigma_px, .robust = true};
+    if (!UnitAdjustment(problem, graph, all, robust, solution.places).Solve()) return std::nullopt;
+    solution.sigma_px = RobustSigma(problem, graph, solution.places);
+    const auto information = SolveWithoutOutliers(problem, graph, solution);
+    if (!information) return std::nullopt;
+    DescribeCameras(problem, *information, solution);
     DescribeSightings(problem, graph, solution);
     return solution;
 }

@@ -81,7 +81,7 @@ TEST_F(UnitSessionTest, NamesEveryMistakeWithItsLine) {
         Load("  left: {lens: none.yaml, pictures: 'a', yaw: 3}\n",
              "  a b: {board: 9x6}\n"
              "  pole: {board: '9x6,0.1', moves: true, surveyed: [{corner: top, at_m: [1, 2, 3]}]}\n"
-             "  post: {board: '9x6,0.1', surveyed: [{corner: top_left, at_m: [1, 2, 3]},\n"
+             "  post: {board: '8x5,0.1', surveyed: [{corner: top_left, at_m: [1, 2, 3]},\n"
              "                                      {corner: top_left, at_m: [1, 2, 3]}]}\n"
              "  rod: {board: '9x6,0.1', sigma_m: 0.01}\n");
     EXPECT_THAT(loaded.error, HasSubstr(":5: cameras.left.lens"));
