@@ -128,7 +128,7 @@ void Capture::ShowAdvice() const {
 }
 
 std::string Capture::Run() {
-    while (!enough()) {
+    while (!enough() && !(options_.stop != nullptr && *options_.stop)) {
         const auto pictures = source_->Next();
         if (!pictures) break;
         LookAtAll(*pictures);
@@ -192,10 +192,13 @@ json Capture::Report() const {
 hal::Checked<std::unique_ptr<CaptureSource>> OpenSource(const CaptureOptions& options,
                                                         const calib::Board& board) {
     const auto given = [](const std::string& option) { return option.empty() ? 0 : 1; };
-    if (given(options.rig) + given(options.video) + given(options.images) != 1)
-        return std::string("one of --rig, --video and --images must be given");
+    if (given(options.rig) + given(options.video) + given(options.images) + given(options.log) != 1)
+        return std::string("one of --rig, --video, --images and --log must be given");
+    if (!options.log.empty() && options.camera.empty())
+        return std::string("--log needs --camera: one of its cameras");
     const std::string name = options.camera.empty() ? "camera" : options.camera;
     if (!options.images.empty()) return OpenPictures(options.images, name);
+    if (!options.log.empty()) return OpenLog(options.log, name);
     if (!options.video.empty()) return OpenVideo(options.video, name);
     return OpenRig(options.rig, options.camera, board);
 }

@@ -1,4 +1,6 @@
 #include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
 #include <map>
 #include <string>
 
@@ -12,6 +14,11 @@ using namespace hitchview::app;
 using Kind = hitchview::algo::CameraModel::Kind;
 
 constexpr int kWrongUse = 2;
+
+std::atomic<bool> stop{false};
+void Stop(int) {
+    stop = true;
+}
 
 std::string CommandLine(int argc, char** argv) {
     std::string line = "hitchview-calib " HITCHVIEW_VERSION;
@@ -76,6 +83,7 @@ CLI::App& AddCapture(CLI::App& app, CaptureOptions& options) {
     verb.add_option("--rig", options.rig, "rig file: all its cameras at once");
     verb.add_option("--video", options.video, "a film of one camera");
     verb.add_option("--images", options.images, "pictures of one camera, a pattern in quotes");
+    verb.add_option("--log", options.log, "a recording (LCM log): its camera --camera");
     verb.add_option("--camera", options.camera, "its name; with --rig, this camera only");
     verb.add_option("--views", options.views, "of each camera, at least (20)")
         ->check(CLI::Range(6, 200));
@@ -101,7 +109,11 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : kWrongUse;
     }
-    if (capture_verb.parsed()) return CaptureVerb(capture);
+    if (capture_verb.parsed()) {
+        std::signal(SIGINT, Stop);
+        capture.stop = &stop;
+        return CaptureVerb(capture);
+    }
     if (target_verb.parsed()) return TargetVerb(target);
     intrinsics.command = CommandLine(argc, argv);
     return IntrinsicsVerb(intrinsics);
