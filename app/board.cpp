@@ -139,8 +139,10 @@ hal::Checked<hal::Done> Board::OpenSimulation(const RigConfig& config) {
         return config.file.string() + ": simulation.scenario is " + name + ", must be one of " +
                drivers::ScenarioNames();
     }
-    auto rig = drivers::SimulatedRig::Create(
-        Overridden(scenario->options, config.simulation, config.period.value_or(kDefaultPeriod)));
+    auto options =
+        Overridden(scenario->options, config.simulation, config.period.value_or(kDefaultPeriod));
+    if (options_.held_sheet != nullptr) options.sheet = *options_.held_sheet;
+    auto rig = drivers::SimulatedRig::Create(options);
     if (!rig) return config.file.string() + ": simulation: " + rig.error();
     simulation_ = std::move(*rig);
     return hal::Done{};

@@ -17,6 +17,7 @@
 namespace hitchview::drivers {
 class LcmLogCanBus;
 class SimulatedRig;
+struct SheetOptions;
 }  // namespace hitchview::drivers
 
 namespace hitchview::app {
@@ -30,6 +31,8 @@ class Board {
     struct Options {
         int held_frames = 2;    ///< frame sets that the program keeps lent
         bool recorded = false;  ///< cameras have taps, and a live CAN bus delivers all its frames
+        /// What somebody holds before each simulated camera; null: nothing. Borrowed by Open.
+        const drivers::SheetOptions* held_sheet = nullptr;
     };
     /// Opens what the configuration names.
     static hal::Checked<std::unique_ptr<Board>> Open(const RigConfig& config,

@@ -1,13 +1,17 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "app/calib_capture_verb.hpp"
 #include "app/calib_formats_arguments.hpp"
 #include "app/calib_hitch_verb.hpp"
 #include "app/calib_intrinsics_verb.hpp"
 #include "app/calib_report_verb.hpp"
+#include "app/calib_target_verb.hpp"
 #include "app/calib_unit_verb.hpp"
 #include "app/calib_verify_verb.hpp"
 
@@ -16,6 +20,11 @@ namespace {
 using namespace hitchview::app;
 
 constexpr int kWrongUse = 2;
+
+std::atomic<bool> stop{false};
+void Stop(int) {
+    stop = true;
+}
 
 std::string CommandLine(int argc, char** argv) {
     std::string line = "hitchview-calib " HITCHVIEW_VERSION;
@@ -35,6 +44,8 @@ int main(int argc, char** argv) {
     CLI::App app{"Hitchview's field calibration: measure cameras and rig, and judge the result"};
     app.set_version_flag("--version", HITCHVIEW_VERSION);
     app.require_subcommand(1);
+    TargetOptions target;
+    CaptureOptions capture{.stop = &stop};
     IntrinsicsOptions intrinsics;
     UnitOptions unit;
     HitchOptions hitch;
@@ -46,6 +57,12 @@ int main(int argc, char** argv) {
                                  &verify.command, &report.command, &imported.command})
         *command = CommandLine(argc, argv);
     const std::vector<Verb> verbs{
+        {AddTarget(app, target), [&] { return TargetVerb(target); }},
+        {AddCapture(app, capture),
+         [&] {
+             std::signal(SIGINT, Stop);
+             return CaptureVerb(capture);
+         }},
         {AddIntrinsics(app, intrinsics), [&] { return IntrinsicsVerb(intrinsics); }},
         {AddUnit(app, unit), [&] { return UnitVerb(unit); }},
         {AddHitch(app, hitch), [&] { return HitchVerb(hitch); }},

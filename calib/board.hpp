@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@ enum class Pattern {
     /// will do. The top left square is black.
     kCharuco,
     /// Tags in a grid, with a small square between the corners of four: a part will do, also far
-    /// away or aslant. The layout of kalibr's aprilgrid.
+    /// away or aslant. Like kalibr's aprilgrid, but its frames are two modules wide.
     kTags,
 };
 
@@ -50,6 +51,22 @@ struct ParsedBoard {
 /// `COLSxROWS,SQUARE_M`: a checkerboard by its inner corners and the side of a square in metres, as
 /// 9x6,0.025.
 ParsedBoard ParseBoard(std::string_view text);
+
+/// A file that describes a board; strict. The error has one line
+/// `file:line: key is VALUE, must be ...` for each mistake. Throws nothing.
+ParsedBoard LoadBoard(const std::filesystem::path& file);
+
+/// Writes such a file, in one step: a reader sees the old or the new content, whole. Empty on
+/// success, otherwise what went wrong. Throws nothing.
+std::string SaveBoard(const Board& board, const std::filesystem::path& file);
+
+/// What people say about a board: as ParseBoard takes it, or the name of a board file.
+ParsedBoard ReadBoard(const std::string& text);
+
+/// In words, as `charuco, 9x6 inner corners, squares of 40 mm, tags of 28 mm from number 0`.
+std::string Describe(const Board& board);
+
+std::string_view ToString(Pattern pattern);
 
 /// A corner of a board in a picture.
 struct SeenCorner {

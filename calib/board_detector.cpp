@@ -76,11 +76,19 @@ SeenCorners DetectCharuco(const cv::Mat& grey, const Board& board,
     return seen;
 }
 
+/// What `read` finds, if there is a board for it.
+std::vector<SeenTag> TagsIn(const cv::Mat& grey, std::span<const Board> boards, Pattern pattern,
+                            std::vector<SeenTag> (*read)(const cv::Mat&)) {
+    const bool wanted =
+        std::ranges::any_of(boards, [&](const Board& board) { return board.pattern == pattern; });
+    return wanted ? read(grey) : std::vector<SeenTag>{};
+}
+
 }  // namespace
 
 std::vector<SeenCorners> DetectBoards(const cv::Mat& grey, std::span<const Board> boards) {
-    const bool any_tags = std::ranges::any_of(boards, [](const Board& b) { return b.tags() > 0; });
-    const std::vector<SeenTag> tags = any_tags ? ReadTags(grey) : std::vector<SeenTag>{};
+    const auto tags = TagsIn(grey, boards, Pattern::kCharuco, ReadTags);
+    const auto joined_tags = TagsIn(grey, boards, Pattern::kTags, ReadJoinedTags);
     std::vector<SeenCorners> seen;
     for (const Board& board : boards) {
         switch (board.pattern) {
@@ -91,7 +99,7 @@ std::vector<SeenCorners> DetectBoards(const cv::Mat& grey, std::span<const Board
                 seen.push_back(DetectCharuco(grey, board, TagsOf(board, tags)));
                 break;
             case Pattern::kTags:
-                seen.push_back(DetectTagCorners(grey, board, TagsOf(board, tags)));
+                seen.push_back(DetectTagCorners(grey, board, TagsOf(board, joined_tags)));
                 break;
         }
     }

@@ -51,6 +51,7 @@ Vector2d Refined(const cv::Mat& grey, const Vector2d& start_px, int half_px) {
 
 std::optional<Vector2d> FindSaddle(const cv::Mat& grey, const ExpectedSaddle& expected) {
     constexpr double kLeastReach_px = 1.5;
+    constexpr double kMostOff_px = 0.7;
     constexpr int kLeastHalf_px = 2;
     constexpr int kMostHalf_px = 8;
     if (!IsInside(grey, expected.at_px)) return std::nullopt;
@@ -58,7 +59,7 @@ std::optional<Vector2d> FindSaddle(const cv::Mat& grey, const ExpectedSaddle& ex
     if (!(reach_px >= kLeastReach_px)) return std::nullopt;
     const int half_px = std::clamp(static_cast<int>(0.8 * reach_px), kLeastHalf_px, kMostHalf_px);
     const Vector2d at_px = Refined(grey, expected.at_px, half_px);
-    if (!IsInside(grey, at_px) || (at_px - expected.at_px).norm() > 0.5 + reach_px)
+    if (!IsInside(grey, at_px) || (at_px - expected.at_px).norm() > kMostOff_px + 0.3 * reach_px)
         return std::nullopt;
     if (!LooksAsExpected(grey, expected, at_px)) return std::nullopt;
     return at_px;

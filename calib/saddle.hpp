@@ -17,7 +17,7 @@ struct ExpectedSaddle {
 };
 
 /// Where they meet, to some hundredths of a pixel; empty where something else is seen, too small,
-/// farther away than the quarters reach, or at the picture's edge. Thread-safe.
+/// too far away, or at the picture's edge. Thread-safe.
 std::optional<Eigen::Vector2d> FindSaddle(const cv::Mat& grey, const ExpectedSaddle& expected);
 
 }  // namespace hitchview::calib

@@ -22,6 +22,26 @@ struct Destroy {
     void operator()(zarray_t* detections) const { apriltag_detections_destroy(detections); }
 };
 
+/// Where a tag's frame lies after its white surroundings have grown into it by `grown_px`.
+SeenTag Regrown(const SeenTag& tag, double grown_px) {
+    SeenTag regrown{.number = tag.number};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vector2d& at = tag.corners_px[i];
+        const Vector2d outwards = (at - tag.corners_px[(i + 1) % 4]).normalized() +
+                                  (at - tag.corners_px[(i + 3) % 4]).normalized();
+        regrown.corners_px[i] = at + grown_px * outwards;
+    }
+    return regrown;
+}
+
+/// A part of a picture, perhaps enlarged, in which white has grown.
+struct Part {
+    cv::Mat grey{};
+    cv::Point origin_px{};
+    int enlarged = 1;
+    double grown_px = 0;  ///< of `grey`
+};
+
 /// Cheap to make, as no wrong bits are looked up.
 class Reader {
  public:
@@ -30,25 +50,28 @@ class Reader {
         detector_->quad_decimate = 1;
     }
 
-    /// Adds what `grey` shows.
-    void Read(const cv::Mat& grey, Tags& tags) const {
-        image_u8_t image = {grey.cols, grey.rows, static_cast<std::int32_t>(grey.step), grey.data};
+    /// Adds what the part shows, in pixels of the whole picture.
+    void Read(const Part& part, Tags& tags) const {
+        image_u8_t image = {part.grey.cols, part.grey.rows,
+                            static_cast<std::int32_t>(part.grey.step), part.grey.data};
         const std::unique_ptr<zarray_t, Destroy> found(
             apriltag_detector_detect(detector_.get(), &image));
         for (int i = 0; i < zarray_size(found.get()); ++i) {
             apriltag_detection_t* tag = nullptr;
             zarray_get(found.get(), i, static_cast<void*>(&tag));
             if (tag->hamming == 0 && tag->decision_margin >= kLeastMargin)
-                tags.push_back(Seen(*tag));
+                tags.push_back(Seen(*tag, part));
         }
     }
 
  private:
     /// Theirs run from the bottom left counter-clockwise, and count from the edge of a pixel.
-    static SeenTag Seen(const apriltag_detection_t& tag) {
+    static SeenTag Seen(const apriltag_detection_t& tag, const Part& part) {
         SeenTag seen{.number = tag.id};
-        for (std::size_t i = 0; i < 4; ++i)
-            seen.corners_px[i] = {tag.p[3 - i][0] - 0.5, tag.p[3 - i][1] - 0.5};
+        for (std::size_t i = 0; i < 4; ++i) seen.corners_px[i] = {tag.p[3 - i][0], tag.p[3 - i][1]};
+        seen = Regrown(seen, part.grown_px);
+        for (Vector2d& at : seen.corners_px)
+            at = at / part.enlarged + Vector2d(part.origin_px.x - 0.5, part.origin_px.y - 0.5);
         return seen;
     }
 
@@ -74,6 +97,31 @@ Tags Unambiguous(Tags tags) {
     return kept;
 }
 
+/// What lies around the tags, where more of them may be.
+cv::Rect Surroundings(const Tags& tags, const cv::Size& size) {
+    cv::Rect box;
+    for (const SeenTag& tag : tags) {
+        const int reach = static_cast<int>(4 * tag.side_px());
+        const Vector2d at = tag.middle_px();
+        box |= cv::Rect(static_cast<int>(at.x()) - reach, static_cast<int>(at.y()) - reach,
+                        2 * reach, 2 * reach);
+    }
+    return box & cv::Rect({0, 0}, size);
+}
+
+Part WithWhiteGrown(const Part& part, cv::MorphShapes shape, int by_px) {
+    Part grown{.origin_px = part.origin_px, .enlarged = part.enlarged, .grown_px = 1.0 * by_px};
+    cv::dilate(part.grey, grown.grey,
+               cv::getStructuringElement(shape, {2 * by_px + 1, 2 * by_px + 1}));
+    return grown;
+}
+
+Part Enlarged(const cv::Mat& grey, const cv::Rect& box) {
+    Part part{.origin_px = box.tl(), .enlarged = 2};
+    cv::resize(grey(box), part.grey, {}, part.enlarged, part.enlarged, cv::INTER_CUBIC);
+    return part;
+}
+
 }  // namespace
 
 Vector2d SeenTag::middle_px() const {
@@ -87,14 +135,20 @@ double SeenTag::side_px() const {
 }
 
 Tags ReadTags(const cv::Mat& grey) {
+    Tags tags;
+    Reader().Read({.grey = grey}, tags);
+    return Unambiguous(std::move(tags));
+}
+
+Tags ReadJoinedTags(const cv::Mat& grey) {
     const Reader reader;
     Tags tags;
-    reader.Read(grey, tags);
-    // Where dark squares touch the corners of a tag, blur may join them with its frame: a second
-    // look with white grown by a pixel parts them.
-    cv::Mat parted;
-    cv::dilate(grey, parted, cv::Mat());
-    reader.Read(parted, tags);
+    reader.Read(WithWhiteGrown({.grey = grey}, cv::MORPH_CROSS, 1), tags);
+    const cv::Rect box = Surroundings(tags, grey.size());
+    if (box.empty()) return tags;
+    const Part enlarged = Enlarged(grey, box);
+    reader.Read(WithWhiteGrown(enlarged, cv::MORPH_RECT, 1), tags);
+    reader.Read(WithWhiteGrown(enlarged, cv::MORPH_RECT, 2), tags);
     return Unambiguous(std::move(tags));
 }
 

@@ -22,4 +22,8 @@ struct SeenTag {
 /// contrast, and none whose number is seen at two places: nobody knows which is meant. Thread-safe.
 std::vector<SeenTag> ReadTags(const cv::Mat& grey);
 
+/// The same for tags whose corners dark squares touch: blur joins them with the frames, so they are
+/// read where white has been made to grow by a pixel or less.
+std::vector<SeenTag> ReadJoinedTags(const cv::Mat& grey);
+
 }  // namespace hitchview::calib

@@ -7,6 +7,7 @@
 
 #include "algo/unit.hpp"
 #include "drivers/simulated_script.hpp"
+#include "drivers/simulated_sheet.hpp"
 #include "hal/frame.hpp"
 #include "hal/result.hpp"
 
@@ -99,6 +100,7 @@ struct SimulationOptions {
     double noise_sigma = 1.0;   ///< grey levels, of each pixel alone
     SceneOptions scene{};
     SensorOptions sensor{};
+    std::optional<SheetOptions> sheet{};  ///< held before each camera
     int render_threads = 2;  ///< threads that share one image; 1: the caller's alone
 };
 

@@ -98,6 +98,8 @@ SimulatedRig::SimulatedRig(const SimulationOptions& options)
       world_(options, motion_.PathOffRoad()),
       renderer_(world_, cameras_[0].geometry.model),
       snowfall_(options.scene.snowflakes, Hash(options.seed, 500)) {
+    if (options.sheet)
+        sheet_.emplace(*options.sheet, cameras_[0].geometry.model, Hash(options.seed, 600));
     if (!options.sensor.auto_exposure) return;
     auto_exposure_.emplace(options, kCameras, [this](int camera_index, int frame) {
         return LightAround(camera_index, frame);
@@ -166,6 +168,7 @@ void SimulatedRig::Render(int camera_index, int frame, Renderer::Workspace& work
                       static_cast<float>(options_.noise_sigma), noise_seed},
                      options_.render_threads, workspace, out_nv12);
     if (options_.scene.snowflakes > 0) DrawSnow(camera_index, frame, out_nv12);
+    if (sheet_) sheet_->DrawOver(camera_index, frame, GainAt(camera_index, frame), out_nv12);
 }
 
 void SimulatedRig::DrawSnow(int camera_index, int frame, std::span<std::uint8_t> nv12) const {

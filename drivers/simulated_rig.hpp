@@ -13,6 +13,7 @@
 #include "drivers/simulated_motion.hpp"
 #include "drivers/simulated_outlook.hpp"
 #include "drivers/simulated_renderer.hpp"
+#include "drivers/simulated_sheet.hpp"
 #include "drivers/simulated_snowfall.hpp"
 
 namespace hitchview::drivers {
@@ -103,6 +104,7 @@ class SimulatedRig {
     World world_;
     Renderer renderer_;
     Snowfall snowfall_;
+    std::optional<HeldSheet> sheet_;
     std::optional<AutoExposure> auto_exposure_;
 };
 

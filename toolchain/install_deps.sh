@@ -8,7 +8,7 @@ set -euo pipefail
 packages=(
     g++ cmake ninja-build ccache pkg-config
     libeigen3-dev libopencv-dev libhwy-dev liblcm-dev liblcm-bin libyaml-cpp-dev libcli11-dev
-    nlohmann-json3-dev libturbojpeg0-dev libjpeg-dev libmicrohttpd-dev libceres-dev libapriltag-dev
+    nlohmann-json3-dev libturbojpeg0-dev libjpeg-dev libmicrohttpd-dev libceres-dev libapriltag-dev libcairo2-dev
     libgtest-dev libgmock-dev libbenchmark-dev
     iproute2 util-linux qemu-user ffmpeg python3
 )

@@ -59,8 +59,7 @@ class BoardTexture {
         const calib::BoardRectangle pattern = calib::PatternArea(board);
         const Eigen::Vector2d rim_m = Eigen::Vector2d::Constant(calib::WhiteMargin_m(board));
         sheet_ = {pattern.from_m - rim_m, pattern.to_m + rim_m};
-        const double finest_m = board.tag_m > 0 ? board.tag_m / 8 : board.square_m / 4;
-        texels_per_m_ = 6 / finest_m;
+        texels_per_m_ = 2000 / sheet_.size_m().maxCoeff();
         const Eigen::Vector2d size = texels_per_m_ * sheet_.size_m();
         white_ = cv::Mat1f(static_cast<int>(std::ceil(size.y())),
                            static_cast<int>(std::ceil(size.x())), 1.F);
