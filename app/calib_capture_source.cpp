@@ -8,6 +8,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "app/board.hpp"
+#include "app/log_pictures.hpp"
 #include "calib/board_pattern.hpp"
 #include "drivers/simulated_sheet.hpp"
 
@@ -65,6 +66,26 @@ class Video final : public CaptureSource {
 
  private:
     cv::VideoCapture film_;
+    std::vector<std::string> cameras_;
+};
+
+class Log final : public CaptureSource {
+ public:
+    Log(std::vector<std::filesystem::path> files, const std::string& camera)
+        : pictures_(std::move(files), camera), cameras_{camera} {}
+
+    [[nodiscard]] const std::vector<std::string>& cameras() const override { return cameras_; }
+    [[nodiscard]] std::string failure() const override { return pictures_.failure(); }
+    std::optional<std::vector<cv::Mat1b>> Next() override {
+        const auto colour = pictures_.Next();
+        if (!colour) return std::nullopt;
+        cv::Mat1b grey;
+        cv::cvtColor(*colour, grey, cv::COLOR_BGR2GRAY);
+        return std::vector{grey};
+    }
+
+ private:
+    LogPictures pictures_;
     std::vector<std::string> cameras_;
 };
 
@@ -146,6 +167,13 @@ hal::Checked<std::unique_ptr<CaptureSource>> OpenVideo(const std::string& file,
     auto video = std::make_unique<Video>(file, camera);
     if (!video->is_open()) return file + ": is no film that can be read";
     return std::unique_ptr<CaptureSource>(std::move(video));
+}
+
+hal::Checked<std::unique_ptr<CaptureSource>> OpenLog(const std::string& log,
+                                                     const std::string& camera) {
+    auto files = LogFiles({log});
+    if (!files) return files.error();
+    return std::unique_ptr<CaptureSource>(std::make_unique<Log>(std::move(files.value()), camera));
 }
 
 hal::Checked<std::unique_ptr<CaptureSource>> OpenRig(const std::string& file,

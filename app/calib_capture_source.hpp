@@ -30,6 +30,9 @@ hal::Checked<std::unique_ptr<CaptureSource>> OpenPictures(const std::string& pat
 /// A film, as one camera.
 hal::Checked<std::unique_ptr<CaptureSource>> OpenVideo(const std::string& file,
                                                        const std::string& camera);
+/// One camera of a recording: an LCM log, or a folder of its segments.
+hal::Checked<std::unique_ptr<CaptureSource>> OpenLog(const std::string& log,
+                                                     const std::string& camera);
 /// The cameras of a rig file: real, recorded or simulated. `only`: one of them; empty: all. Before
 /// simulated ones somebody holds `board`.
 hal::Checked<std::unique_ptr<CaptureSource>> OpenRig(const std::string& file,

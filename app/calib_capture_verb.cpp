@@ -128,7 +128,7 @@ void Capture::ShowAdvice() const {
 }
 
 std::string Capture::Run() {
-    while (!enough()) {
+    while (!enough() && !(options_.stop != nullptr && *options_.stop)) {
         const auto pictures = source_->Next();
         if (!pictures) break;
         LookAtAll(*pictures);
@@ -192,15 +192,37 @@ json Capture::Report() const {
 hal::Checked<std::unique_ptr<CaptureSource>> OpenSource(const CaptureOptions& options,
                                                         const calib::Board& board) {
     const auto given = [](const std::string& option) { return option.empty() ? 0 : 1; };
-    if (given(options.rig) + given(options.video) + given(options.images) != 1)
-        return std::string("one of --rig, --video and --images must be given");
+    if (given(options.rig) + given(options.video) + given(options.images) + given(options.log) != 1)
+        return std::string("one of --rig, --video, --images and --log must be given");
+    if (!options.log.empty() && options.camera.empty())
+        return std::string("--log needs --camera: one of its cameras");
     const std::string name = options.camera.empty() ? "camera" : options.camera;
     if (!options.images.empty()) return OpenPictures(options.images, name);
+    if (!options.log.empty()) return OpenLog(options.log, name);
     if (!options.video.empty()) return OpenVideo(options.video, name);
     return OpenRig(options.rig, options.camera, board);
 }
 
 }  // namespace
+
+CLI::App& AddCapture(CLI::App& app, CaptureOptions& options) {
+    CLI::App& verb = *app.add_subcommand(
+        "capture",
+        "Choose pictures of a board that is held before the cameras, and say what to do next.\n"
+        "Exit code 0: every camera has enough, 1: not, and what is missing.\n"
+        "Example: hitchview-calib capture --rig rig.yaml --board board.yaml --out pictures");
+    verb.add_option("--board", options.board, "board file, or COLSxROWS,SQUARE_M")->required();
+    verb.add_option("--rig", options.rig, "rig file: all its cameras at once");
+    verb.add_option("--video", options.video, "a film of one camera");
+    verb.add_option("--images", options.images, "pictures of one camera, a pattern in quotes");
+    verb.add_option("--log", options.log, "a recording (LCM log): its camera --camera");
+    verb.add_option("--camera", options.camera, "its name; with --rig, this camera only");
+    verb.add_option("--views", options.views, "of each camera, at least (20)")
+        ->check(CLI::Range(6, 200));
+    verb.add_option("--out", options.out, "folder for a new folder of each camera")->required();
+    verb.add_option("--json", options.json, "file for all figures");
+    return verb;
+}
 
 int CaptureVerb(const CaptureOptions& options) {
     const calib::ParsedBoard board = calib::ReadBoard(options.board);

@@ -1,7 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,18 @@
 #include "app/calib_report_verb.hpp"
 #include "app/calib_target_verb.hpp"
 #include "app/calib_unit_verb.hpp"
+#include "app/calib_verify_verb.hpp"
 
 namespace {
 
 using namespace hitchview::app;
 
 constexpr int kWrongUse = 2;
+
+std::atomic<bool> stop{false};
+void Stop(int) {
+    stop = true;
+}
 
 std::string CommandLine(int argc, char** argv) {
     std::string line = "hitchview-calib " HITCHVIEW_VERSION;
@@ -31,71 +38,35 @@ struct Verb {
     std::function<int()> run;
 };
 
-CLI::App& AddTarget(CLI::App& app, TargetOptions& options) {
-    using hitchview::calib::Pattern;
-    CLI::App& verb = *app.add_subcommand(
-        "target",
-        "Print a board: a sheet at its exact size, with a bar to measure after printing.\n"
-        "What is not given is chosen so that the paper is filled.\n"
-        "Example: hitchview-calib target --pattern charuco --paper a2 --out sheet.pdf "
-        "--board-out board.yaml");
-    SheetRequest& sheet = options.sheet;
-    verb.add_option("--pattern", sheet.pattern, "checkerboard, charuco or tags (charuco)")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, Pattern>{{"checkerboard", Pattern::kCheckerboard},
-                                           {"charuco", Pattern::kCharuco},
-                                           {"tags", Pattern::kTags}}));
-    verb.add_option("--columns", sheet.columns, "inner corners in a row, or tags");
-    verb.add_option("--rows", sheet.rows, "inner corners in a column, or tags");
-    verb.add_option("--square-m", sheet.square_m, "side of a square; from tag to tag");
-    verb.add_option("--tag-m", sheet.tag_m, "side of a tag's black frame");
-    verb.add_option("--first-tag", sheet.first_tag, "number of the first tag (0)");
-    verb.add_option("--paper", sheet.paper, "a4 to a0, or WIDTHxHEIGHT in mm (a4)");
-    verb.add_option("--out", options.out, "sheet to write, .pdf or .svg")->required();
-    verb.add_option("--board-out", options.board_out, "board file to write, for --board");
-    return verb;
-}
-
-CLI::App& AddCapture(CLI::App& app, CaptureOptions& options) {
-    CLI::App& verb = *app.add_subcommand(
-        "capture",
-        "Choose pictures of a board that is held before the cameras, and say what to do next.\n"
-        "Exit code 0: every camera has enough, 1: not, and what is missing.\n"
-        "Example: hitchview-calib capture --rig rig.yaml --board board.yaml --out pictures");
-    verb.add_option("--board", options.board, "board file, or COLSxROWS,SQUARE_M")->required();
-    verb.add_option("--rig", options.rig, "rig file: all its cameras at once");
-    verb.add_option("--video", options.video, "a film of one camera");
-    verb.add_option("--images", options.images, "pictures of one camera, a pattern in quotes");
-    verb.add_option("--camera", options.camera, "its name; with --rig, this camera only");
-    verb.add_option("--views", options.views, "of each camera, at least (20)")
-        ->check(CLI::Range(6, 200));
-    verb.add_option("--out", options.out, "folder for a new folder of each camera")->required();
-    verb.add_option("--json", options.json, "file for all figures");
-    return verb;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
     CLI::App app{"Hitchview's field calibration: measure cameras and rig, and judge the result"};
     app.set_version_flag("--version", HITCHVIEW_VERSION);
     app.require_subcommand(1);
+    TargetOptions target;
+    CaptureOptions capture{.stop = &stop};
     IntrinsicsOptions intrinsics;
     UnitOptions unit;
     HitchOptions hitch;
+    VerifyOptions verify;
     CalibReportOptions report;
     CalibImportOptions imported;
     CalibExportOptions exported;
-    CaptureOptions capture;
-    TargetOptions target;
-    intrinsics.command = unit.command = hitch.command = report.command = imported.command =
-        CommandLine(argc, argv);
+    for (std::string* command : {&intrinsics.command, &unit.command, &hitch.command,
+                                 &verify.command, &report.command, &imported.command})
+        *command = CommandLine(argc, argv);
     const std::vector<Verb> verbs{
         {AddTarget(app, target), [&] { return TargetVerb(target); }},
-        {AddCapture(app, capture), [&] { return CaptureVerb(capture); }},
+        {AddCapture(app, capture),
+         [&] {
+             std::signal(SIGINT, Stop);
+             return CaptureVerb(capture);
+         }},
         {AddIntrinsics(app, intrinsics), [&] { return IntrinsicsVerb(intrinsics); }},
         {AddUnit(app, unit), [&] { return UnitVerb(unit); }},
         {AddHitch(app, hitch), [&] { return HitchVerb(hitch); }},
+        {AddVerify(app, verify), [&] { return VerifyVerb(verify); }},
         {AddCalibReport(app, report), [&] { return CalibReportVerb(report); }},
         {AddCalibImport(app, imported), [&] { return CalibImportVerb(imported); }},
         {AddCalibExport(app, exported), [&] { return CalibExportVerb(exported); }},

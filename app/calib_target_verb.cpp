@@ -1,6 +1,8 @@
 #include "app/calib_target_verb.hpp"
 
 #include <cstdio>
+#include <map>
+#include <string>
 
 #include "app/calib_sheet.hpp"
 #include "calib/replace_file.hpp"
@@ -27,6 +29,31 @@ std::string Save(const TargetOptions& options, const SheetPlan& plan, SheetForma
 }
 
 }  // namespace
+
+CLI::App& AddTarget(CLI::App& app, TargetOptions& options) {
+    using calib::Pattern;
+    CLI::App& verb = *app.add_subcommand(
+        "target",
+        "Print a board: a sheet at its exact size, with a bar to measure after printing.\n"
+        "What is not given is chosen so that the paper is filled.\n"
+        "Example: hitchview-calib target --pattern charuco --paper a2 --out sheet.pdf "
+        "--board-out board.yaml");
+    SheetRequest& sheet = options.sheet;
+    verb.add_option("--pattern", sheet.pattern, "checkerboard, charuco or tags (charuco)")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, Pattern>{{"checkerboard", Pattern::kCheckerboard},
+                                           {"charuco", Pattern::kCharuco},
+                                           {"tags", Pattern::kTags}}));
+    verb.add_option("--columns", sheet.columns, "inner corners in a row, or tags");
+    verb.add_option("--rows", sheet.rows, "inner corners in a column, or tags");
+    verb.add_option("--square-m", sheet.square_m, "side of a square; from tag to tag");
+    verb.add_option("--tag-m", sheet.tag_m, "side of a tag's black frame");
+    verb.add_option("--first-tag", sheet.first_tag, "number of the first tag (0)");
+    verb.add_option("--paper", sheet.paper, "a4 to a0, or WIDTHxHEIGHT in mm (a4)");
+    verb.add_option("--out", options.out, "sheet to write, .pdf or .svg")->required();
+    verb.add_option("--board-out", options.board_out, "board file to write, for --board");
+    return verb;
+}
 
 int TargetVerb(const TargetOptions& options) {
     const std::string extension = options.out.extension().string();

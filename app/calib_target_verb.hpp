@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "app/calib_sheet_plan.hpp"
@@ -11,6 +12,8 @@ struct TargetOptions {
     std::filesystem::path out{};        ///< .pdf or .svg
     std::filesystem::path board_out{};  ///< board file; empty: none
 };
+
+CLI::App& AddTarget(CLI::App& app, TargetOptions& options);
 
 /// Writes a sheet to print, and the board file that describes it. 0: written; 2: wrong use, or it
 /// does not fit on the paper; 3: a file could not be written.

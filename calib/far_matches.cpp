@@ -24,7 +24,7 @@ constexpr double kRough_rad = 0.05;
 constexpr double kHalfView = 1.2;  // tangent of the angle from the middle of the view to its edge
 constexpr double kClearly = 0.75;  // best over second best distance of descriptors
 constexpr int kFewestPixels = 2000;
-constexpr int kMostFeatures = 3000;
+constexpr int kMostFeatures = 1500;
 /// Features that reach across the edge of what both see would be of the edge.
 constexpr int kEdge_px = 8;
 
@@ -100,6 +100,11 @@ Features Detect(const CommonView& view, const Redrawn& redrawn, const cv::Mat1b&
     return features;
 }
 
+/// 128 numbers.
+Eigen::Map<const Eigen::VectorXf> Descriptor(const Features& features, std::size_t i) {
+    return {features.descriptors.ptr<float>(static_cast<int>(i)), features.descriptors.cols};
+}
+
 /// For each feature the other that is clearly the best of those that lie where its thing could be,
 /// from 10 m to infinity; or -1. `baseline_m`: from the camera of `among` to that of `of`.
 std::vector<int> Best(const Features& of, const Features& among, const Vector3d& baseline_m) {
@@ -113,8 +118,7 @@ std::vector<int> Best(const Features& of, const Features& among, const Vector3d&
             if (of.rays[i].dot(among.rays[k]) < least_cosine ||
                 AngleAtBestDistance(of.rays[i], among.rays[k], baseline_m).angle_rad > kRough_rad)
                 continue;
-            const double distance = cv::norm(of.descriptors.row(static_cast<int>(i)),
-                                             among.descriptors.row(static_cast<int>(k)));
+            const double distance = (Descriptor(of, i) - Descriptor(among, k)).norm();
             second = std::min(second, std::max(distance, least));
             if (distance >= least) continue;
             least = distance;

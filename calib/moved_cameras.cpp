@@ -1,81 +1,88 @@
 #include "calib/moved_cameras.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
-#include <bit>
-#include <cstdint>
-#include <optional>
+
+#include "calib/reprojection_error.hpp"
 
 namespace hitchview::calib {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::MatrixXd;
 using Eigen::Vector3d;
-using Eigen::VectorXd;
 
-constexpr int kMostMoved = 3;
+constexpr std::size_t kMostMoved = 3;
 
-/// A set of cameras, one bit each.
-using Cameras = std::uint32_t;
-
-/// Turns of those cameras that suit the pairs best, others stay; three numbers each, by index.
-class Hypothesis {
+/// Looks for the fewest cameras.
+class Explanation {
  public:
-    Hypothesis(std::size_t cameras, const std::vector<PairTurn>& pairs, Cameras moved)
-        : pairs_(pairs), turns_(cameras, Vector3d::Zero()) {
-        for (std::size_t i = 0; i < cameras; ++i)
-            if ((moved >> i & 1U) != 0) free_.push_back(i);
-        if (!free_.empty()) Fit();
-    }
+    Explanation(std::size_t cameras, const std::vector<PairTurn>& pairs, double limit_rad)
+        : pairs_(pairs), limit_rad_(limit_rad), turns_(cameras, Vector3d::Zero()) {}
 
-    [[nodiscard]] bool Explains(double limit_rad) const {
-        return std::ranges::all_of(pairs_, [&](const PairTurn& pair) {
-            const Vector3d left = turns_[pair.second] - turns_[pair.first] - pair.turn_rad;
-            return pair.Shift_rad(left) <= limit_rad;
-        });
-    }
-    [[nodiscard]] std::vector<MovedCamera> Moved() const {
-        std::vector<MovedCamera> moved;
-        for (const std::size_t i : free_) moved.push_back({i, turns_[i].norm()});
-        return moved;
+    /// With exactly `count` moved cameras.
+    std::vector<std::vector<MovedCamera>> WithCount(std::size_t count) {
+        answers_.clear();
+        Choose(0, count);
+        return answers_;
     }
 
  private:
-    /// Place of a camera among the free ones; empty: it stays.
-    [[nodiscard]] std::optional<Eigen::Index> Column(std::size_t camera) const {
-        const auto at = std::ranges::find(free_, camera);
-        if (at == free_.end()) return std::nullopt;
-        return 3 * (at - free_.begin());
-    }
-
-    void Fit() {
-        const auto size = 3 * std::ssize(free_);
-        // A turn that no pair shows is none.
-        MatrixXd normal = 1e-9 * MatrixXd::Identity(size, size);
-        VectorXd right = VectorXd::Zero(size);
-        for (const PairTurn& pair : pairs_) Add(pair, normal, right);
-        const VectorXd found = normal.ldlt().solve(right);
-        for (std::size_t i = 0; i < free_.size(); ++i)
-            turns_[free_[i]] = found.segment<3>(3 * static_cast<Eigen::Index>(i));
-    }
-
-    void Add(const PairTurn& pair, MatrixXd& normal, VectorXd& right) const {
-        const auto first = Column(pair.first);
-        const auto second = Column(pair.second);
-        if (first) normal.block<3, 3>(*first, *first) += pair.shown;
-        if (second) normal.block<3, 3>(*second, *second) += pair.shown;
-        if (first && second) {
-            normal.block<3, 3>(*first, *second) -= pair.shown;
-            normal.block<3, 3>(*second, *first) -= pair.shown;
+    /// Completes the set of moved cameras with `count` from `from` on.
+    void Choose(std::size_t from, std::size_t count) {
+        if (count == 0) {
+            if (TurnFrom(0)) Keep();
+            return;
         }
-        if (first) right.segment<3>(*first) -= pair.shown * pair.turn_rad;
-        if (second) right.segment<3>(*second) += pair.shown * pair.turn_rad;
+        for (std::size_t camera = from; camera + count <= turns_.size(); ++camera) {
+            moved_.push_back(camera);
+            Choose(camera + 1, count - 1);
+            moved_.pop_back();
+        }
+    }
+
+    /// Whether turns of the moved cameras from number `i` on explain all pairs; sets the turns.
+    bool TurnFrom(std::size_t i) {
+        if (i == moved_.size()) return Explains();
+        for (const Vector3d& turn : Candidates(moved_[i])) {
+            turns_[moved_[i]] = turn;
+            if (TurnFrom(i + 1)) return true;
+        }
+        turns_[moved_[i]] = Vector3d::Zero();
+        return false;
+    }
+
+    /// What the pairs of a camera suggest while their other camera stays.
+    [[nodiscard]] std::vector<Vector3d> Candidates(std::size_t camera) const {
+        std::vector<Vector3d> candidates;
+        for (const PairTurn& pair : pairs_) {
+            if (pair.second == camera) candidates.push_back(pair.turn_rad);
+            if (pair.first == camera) candidates.emplace_back(-pair.turn_rad);
+        }
+        return candidates;
+    }
+
+    [[nodiscard]] bool Explains() const {
+        return std::ranges::all_of(pairs_, [&](const PairTurn& pair) {
+            const Vector3d left = turns_[pair.second] - turns_[pair.first] - pair.turn_rad;
+            if (left.norm() <= limit_rad_) return true;
+            const double best = pair.OffShare(Matrix3d::Identity(), Rotation(pair.turn_rad));
+            return pair.OffShare(Rotation(turns_[pair.first]), Rotation(turns_[pair.second])) <
+                   best + PairTurn::kClearly;
+        });
+    }
+
+    void Keep() {
+        std::vector<MovedCamera>& answer = answers_.emplace_back();
+        for (const std::size_t camera : moved_) {
+            answer.push_back({camera, turns_[camera].norm()});
+            turns_[camera] = Vector3d::Zero();
+        }
     }
 
     const std::vector<PairTurn>& pairs_;
-    std::vector<std::size_t> free_{};
+    const double limit_rad_;
     std::vector<Vector3d> turns_;
+    std::vector<std::size_t> moved_{};
+    std::vector<std::vector<MovedCamera>> answers_{};
 };
 
 }  // namespace
@@ -83,15 +90,12 @@ class Hypothesis {
 std::vector<std::vector<MovedCamera>> ExplainByMoves(std::size_t cameras,
                                                      const std::vector<PairTurn>& pairs,
                                                      double limit_rad) {
-    std::vector<std::vector<MovedCamera>> answers;
-    for (int count = 0; count <= kMostMoved && answers.empty(); ++count) {
-        for (Cameras moved = 0; moved < Cameras{1} << cameras; ++moved) {
-            if (std::popcount(moved) != count) continue;
-            const Hypothesis hypothesis(cameras, pairs, moved);
-            if (hypothesis.Explains(limit_rad)) answers.push_back(hypothesis.Moved());
-        }
+    Explanation explanation(cameras, pairs, limit_rad);
+    for (std::size_t count = 0; count <= std::min(kMostMoved, cameras); ++count) {
+        auto answers = explanation.WithCount(count);
+        if (!answers.empty()) return answers;
     }
-    return answers;
+    return {};
 }
 
 }  // namespace hitchview::calib

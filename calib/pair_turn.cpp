@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "calib/camera_graph.hpp"
+#include "calib/far_matches.hpp"
 #include "calib/lens_solver.hpp"
 #include "calib/reprojection_error.hpp"
 #include "calib/unit_adjustment.hpp"
@@ -18,6 +19,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr std::size_t kFewestFarMatches = 8;
+/// Rays farther apart than this do not meet: half a pixel of a 120-degree camera.
+constexpr double kApart_rad = 0.001;
 
 /// A target at one moment.
 using Moment = std::pair<std::size_t, std::string>;
@@ -80,31 +83,71 @@ std::optional<UnitPlaces> Start(const UnitProblem& pair, const CameraGraph& grap
     return places;
 }
 
-/// Directions from the second camera of all that both see, unit frame.
-std::vector<Vector3d> CommonDirections(const UnitProblem& pair) {
-    std::vector<Vector3d> directions;
-    const auto add = [&](const Eigen::Vector2d& at_px) {
-        const auto ray = pair.cameras[1].model.Unproject(at_px);
-        if (ray) directions.push_back(pair.cameras[1].pose->T_unit_camera.linear() * *ray);
-    };
-    for (const FarMatch& match : pair.far_matches) add(match.second_px);
-    for (const Sighting& sighting : pair.sightings) {
-        if (sighting.camera != 1) continue;
-        for (const SeenCorner& corner : sighting.corners) add(corner.at_px);
+void AddFar(const UnitProblem& pair, std::vector<CommonSight>& sights) {
+    const auto& cameras = pair.cameras;
+    for (const FarMatch& match : pair.far_matches) {
+        const auto first = cameras[0].model.Unproject(match.first_px);
+        const auto second = cameras[1].model.Unproject(match.second_px);
+        if (!first || !second) continue;
+        sights.push_back({cameras[0].pose->T_unit_camera.linear() * *first,
+                          cameras[1].pose->T_unit_camera.linear() * *second});
     }
-    return directions;
 }
 
-Matrix3d Shown(const std::vector<Vector3d>& directions) {
-    Matrix3d sum = Matrix3d::Zero();
-    for (const Vector3d& d : directions) sum += Matrix3d::Identity() - d * d.transpose();
-    return sum / static_cast<double>(directions.size());
+/// `places`: boards as the first camera sees them.
+void AddBoards(const UnitProblem& pair, const CameraGraph& graph, const UnitPlaces& places,
+               std::vector<CommonSight>& sights) {
+    const Vector3d first_m = pair.cameras[0].pose->T_unit_camera.translation();
+    const Isometry3d& second = pair.cameras[1].pose->T_unit_camera;
+    for (std::size_t i = 0; i < pair.sightings.size(); ++i) {
+        const Sighting& sighting = pair.sightings[i];
+        if (sighting.camera != 1 || !graph.node_of[i]) continue;
+        const Isometry3d& T_unit_board = places.T_unit_target[*graph.node_of[i]];
+        for (const SeenCorner& corner : sighting.corners) {
+            const auto ray = pair.cameras[1].model.Unproject(corner.at_px);
+            if (!ray) continue;
+            const Vector3d to_corner =
+                T_unit_board * pair.targets[sighting.target].board.Corner(corner.index) - first_m;
+            sights.push_back({to_corner.normalized(), second.linear() * *ray, to_corner.norm()});
+        }
+    }
+}
+
+/// Angle between the two rays to each thing.
+std::vector<double> Angles(const PairTurn& pair, const Matrix3d& first_turn,
+                           const Matrix3d& second_turn) {
+    std::vector<double> angles_rad;
+    for (const CommonSight& sight : pair.sights) {
+        const Vector3d first = first_turn * sight.from_first;
+        const Vector3d second = second_turn * sight.from_second;
+        if (sight.distance_m) {
+            const Vector3d expected = first * *sight.distance_m + pair.baseline_m;
+            angles_rad.push_back(std::atan2(expected.cross(second).norm(), expected.dot(second)));
+        } else {
+            angles_rad.push_back(AngleAtBestDistance(first, second, pair.baseline_m).angle_rad);
+        }
+    }
+    return angles_rad;
 }
 
 }  // namespace
 
-double PairTurn::Shift_rad(const Vector3d& turn) const {
-    return std::sqrt(std::max(0.0, turn.dot(shown * turn)));
+double PairTurn::OffShare(const Matrix3d& first_turn, const Matrix3d& second_turn) const {
+    const std::vector<double> angles_rad = Angles(*this, first_turn, second_turn);
+    const auto off =
+        std::ranges::count_if(angles_rad, [](double angle_rad) { return angle_rad > kApart_rad; });
+    return static_cast<double>(off) / static_cast<double>(angles_rad.size());
+}
+
+double PairTurn::Misalignment_rad() const {
+    const Matrix3d still = Matrix3d::Identity();
+    std::vector<double> angles_rad = Angles(*this, still, still);
+    const auto middle = angles_rad.begin() + std::ssize(angles_rad) / 2;
+    std::ranges::nth_element(angles_rad, middle);
+    double shift_rad = 0;
+    for (const CommonSight& sight : sights)
+        shift_rad += turn_rad.cross(sight.from_second).norm() / static_cast<double>(sights.size());
+    return std::max(*middle, shift_rad);
 }
 
 std::optional<PairTurn> MeasurePairTurn(const UnitProblem& problem, std::size_t first,
@@ -114,17 +157,24 @@ std::optional<PairTurn> MeasurePairTurn(const UnitProblem& problem, std::size_t 
     const CameraGraph graph = BuildCameraGraph(pair);
     auto places = Start(pair, graph);
     if (!places) return std::nullopt;
+    PairTurn result{.first = first,
+                    .second = second,
+                    .baseline_m = pair.cameras[0].pose->T_unit_camera.translation() -
+                                  pair.cameras[1].pose->T_unit_camera.translation(),
+                    .boards = SharedMoments(problem, first, second).size()};
+    AddFar(pair, result.sights);
+    AddBoards(pair, graph, *places, result.sights);
+    if (result.sights.empty()) return std::nullopt;
     const KeptCorners kept = AllCorners(pair, graph);
     if (!UnitAdjustment(pair, graph, kept, {.robust = true}, *places).Solve()) return std::nullopt;
     const Matrix3d turn = places->T_unit_camera[1].linear() *
                           pair.cameras[1].pose->T_unit_camera.linear().transpose();
-    const Eigen::AngleAxisd axis(turn);
-    return PairTurn{.first = first,
-                    .second = second,
-                    .turn_rad = axis.angle() * axis.axis(),
-                    .shown = Shown(CommonDirections(pair)),
-                    .far_matches = pair.far_matches.size(),
-                    .boards = SharedMoments(problem, first, second).size()};
+    const Matrix3d still = Matrix3d::Identity();
+    if (result.OffShare(still, still) - result.OffShare(still, turn) >= PairTurn::kClearly) {
+        const Eigen::AngleAxisd axis(turn);
+        result.turn_rad = axis.angle() * axis.axis();
+    }
+    return result;
 }
 
 std::vector<PairTurn> MeasurePairTurns(const UnitProblem& problem) {

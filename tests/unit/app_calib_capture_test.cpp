@@ -8,6 +8,7 @@
 
 #include "app/calib_capture_verb.hpp"
 #include "calib/board_detector.hpp"
+#include "drivers/simulated_rig.hpp"
 #include "tests/support/board_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -74,7 +75,7 @@ class CaptureTest : public testing::Test {
 };
 
 /// Focal length that OpenCV finds from the pictures.
-double FocalFrom(const std::vector<std::string>& pictures) {
+double FocalFrom(const std::vector<std::string>& pictures, const cv::Size& size_px) {
     std::vector<std::vector<cv::Point3d>> board;
     std::vector<std::vector<cv::Point2d>> corners;
     for (const std::string& picture : pictures) {
@@ -88,9 +89,10 @@ double FocalFrom(const std::vector<std::string>& pictures) {
             corners.back().emplace_back(corner.at_px.x(), corner.at_px.y());
         }
     }
-    cv::Mat camera = (cv::Mat_<double>(3, 3) << 200, 0, 240, 0, 200, 150, 0, 0, 1);
+    cv::Mat camera =
+        (cv::Mat_<double>(3, 3) << 200, 0, size_px.width / 2, 0, 200, size_px.height / 2, 0, 0, 1);
     cv::Mat distortion = cv::Mat::zeros(4, 1, CV_64F);
-    cv::fisheye::calibrate(board, corners, {480, 300}, camera, distortion, cv::noArray(),
+    cv::fisheye::calibrate(board, corners, size_px, camera, distortion, cv::noArray(),
                            cv::noArray(),
                            cv::fisheye::CALIB_RECOMPUTE_EXTRINSIC | cv::fisheye::CALIB_FIX_SKEW |
                                cv::fisheye::CALIB_USE_INTRINSIC_GUESS);
@@ -106,7 +108,7 @@ TEST_F(CaptureTest, PicturesThatAreKeptAreEnoughForTheLens) {
     EXPECT_LE(kept.size(), 60U);
     EXPECT_EQ(Report()["cameras"][0]["views"], kept.size());
     EXPECT_LT(Report()["cameras"][0]["pictures"], 120) << "it goes on when it has enough";
-    EXPECT_NEAR(FocalFrom(kept), 220, 1);
+    EXPECT_NEAR(FocalFrom(kept, {480, 300}), 220, 1);
 }
 
 TEST_F(CaptureTest, ASourceThatEndsEarlyIsNotEnough) {
@@ -116,6 +118,25 @@ TEST_F(CaptureTest, ASourceThatEndsEarlyIsNotEnough) {
     EXPECT_EQ(Report()["enough"], false);
     EXPECT_FALSE(Report()["cameras"][0]["missing"].empty());
     EXPECT_LE(Kept().size(), 4U);
+}
+
+TEST_F(CaptureTest, BeforeASimulatedRigTheBoardIsHeldUntilItIsEnough) {
+    options_.images.clear();
+    options_.camera.clear();
+    options_.rig =
+        folder_.Write("rig.yaml",
+                      "schema: 1\n"
+                      "canvas: {projection: plane, size_px: [640, 480]}\n"
+                      "units:\n"
+                      "  tractor: {cameras: [{name: front, source: {simulated: true}}]}\n"
+                      "  trailer: {cameras: [{name: rear, source: {simulated: true}}]}\n"
+                      "simulation: {camera_size_px: [400, 260], frames: 400}\n"
+                      "publish: {url: 'memq://'}\n");
+
+    ASSERT_EQ(CaptureVerb(options_), 0);
+    EXPECT_EQ(Report()["cameras"].size(), 2U);
+    const drivers::SimulatedRigGeometryTable truth = drivers::SimulatedRigGeometry(400, 260);
+    EXPECT_NEAR(FocalFrom(Kept(), {400, 260}), truth[0].geometry.model.fx_px, 1);
 }
 
 TEST_F(CaptureTest, WrongUseIsRefused) {

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 class BoardFileTest : public testing::Test {
  protected:
-    [[nodiscard]] std::filesystem::path File() const { return folder_.path() + "/board.yaml"; }
+    [[nodiscard]] std::filesystem::path File() const { return folder_ / "board.yaml"; }
     [[nodiscard]] std::string ErrorOf(const std::string& text) const {
         std::ofstream(File()) << text;
         const ParsedBoard parsed = LoadBoard(File());
