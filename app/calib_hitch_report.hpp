@@ -11,7 +11,7 @@ namespace hitchview::app {
 
 using Reasons = std::vector<std::string>;
 
-/// All figures of a hitch point (docs/calibration.md), and the same for a person on stdout.
+/// All figures of a hitch point (docs/calibration-units.md), and the same for a person on stdout.
 nlohmann::json HitchJson(const calib::HitchSolution& solution, const Reasons& reasons);
 void PrintHitch(const calib::HitchSolution& solution, const Reasons& reasons);
 

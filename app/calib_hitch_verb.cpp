@@ -93,7 +93,7 @@ CLI::App& AddHitch(CLI::App& app, HitchOptions& options) {
                             "--out rig.calib.yaml");
     auto* const source = verb.add_option_group("source");
     source->add_option("--session", options.session,
-                       "what is in which pictures (docs/calibration.md)");
+                       "what is in which pictures (docs/calibration-units.md)");
     source->add_option("--log", options.log,
                        "recording with panoramas and hitch angles: files or folders");
     source->require_option(1);

@@ -26,7 +26,7 @@ struct UnitFindings {
     std::vector<std::string> reasons{};  ///< empty: it may be driven with
 };
 
-/// All figures (docs/calibration.md).
+/// All figures (docs/calibration-units.md).
 nlohmann::json UnitJson(const UnitFindings& findings);
 
 /// The same for a person, on stdout.

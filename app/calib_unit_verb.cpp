@@ -128,7 +128,7 @@ CLI::App& AddUnit(CLI::App& app, UnitOptions& options) {
                             "Example: hitchview-calib unit --session tractor.yaml --out "
                             "rig.calib.yaml");
     verb.add_option("--session", options.session,
-                    "what is in which pictures, and what was surveyed (docs/calibration.md)")
+                    "what is in which pictures, and what was surveyed (docs/calibration-units.md)")
         ->required();
     verb.add_option("--out", options.out, "rig calibration to write");
     verb.add_option("--into", options.into, "rig calibration whose other unit is kept");

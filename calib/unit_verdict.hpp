@@ -14,7 +14,7 @@ namespace hitchview::calib {
 ///  - a camera has fewer than 20 corners that fit;
 ///  - corners of a camera are off by more than 1 px (root mean square), or a sighting is an outlier
 ///    (see SightingOutcome);
-///  - a surveyed corner is off by more than 4 standard deviations and 5 mm, or a measured pose by 4
+///  - a surveyed corner is off by more than 5 standard deviations and 5 mm, or a measured pose by 5
 ///    standard deviations;
 ///  - a standard deviation is larger than 0.05 degrees or 5 mm.
 std::vector<std::string> JudgeUnit(const UnitProblem& problem, const CameraGraph& graph,

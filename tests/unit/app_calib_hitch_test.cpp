@@ -96,22 +96,31 @@ class CalibHitchTest : public testing::Test {
             rig.cameras[std::string(camera.name)] = calib::CalibratedCamera::From(camera.unit, own);
         }
         EXPECT_EQ(calib::SaveCalibration(rig, folder_ / "rig.yaml"), "");
-        Hang(13, 3, {3, 3.5, 1.2});
-        Hang(11, 4, {1.2, 3.2, 0.6});
-        Hang(10, 5, {-0.6, 3.2, 1.9});
-        Hang(9, 6, {-2.4, 3.5, 0.9});
+        for (const Vector3d& middle_m : {Vector3d(3, 3.5, 1.2),
+                                         {1.2, 3.2, 0.6},
+                                         {-0.6, 3.2, 2.1},
+                                         {-2.4, 3.5, 0.9},
+                                         {0.2, 2.8, 1.3}})
+            Hang(middle_m);
         const std::array<double, 3> turns_deg{0, 18, -18};
         for (std::size_t i = 0; i < turns_deg.size(); ++i)
             TakePictures(std::to_string(i), turns_deg.at(i) * kDegree);
     }
 
-    void Hang(int columns, int rows, const Vector3d& middle_m) {
-        const calib::Board board{.columns = columns, .rows = rows, .square_m = 0.11};
+    void Hang(const Vector3d& middle_m) {
+        const calib::Board board{.columns = 3,
+                                 .rows = 2,
+                                 .square_m = 0.4,
+                                 .pattern = calib::Pattern::kTags,
+                                 .tag_m = 0.32,
+                                 .first_tag = 6 * static_cast<int>(boards_.size())};
+        const std::string name = std::to_string(boards_.size()).append(".yaml");
+        EXPECT_EQ(calib::SaveBoard(board, folder_ / name), "");
         Isometry3d T = Isometry3d::Identity();
         // Faces the vehicle: its z looks to the left, its y down.
         T.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
         T.linear() = T.linear() * Eigen::AngleAxisd(0.3, Vector3d(1, 1, 0).normalized());
-        T.translation() = middle_m - T.linear() * (board.Corner(board.count() - 1) / 2);
+        T.translation() = middle_m - T.linear() * (board.Corner(board.count() - 2) / 2);
         boards_.push_back({board, T});
     }
 
@@ -139,8 +148,9 @@ TEST_F(CalibHitchTest, PutsTheOriginIntoTheHitchPoint) {
         folder_.Write("hitch.yaml",
                       "schema: 1\ncalibration: rig.yaml\n"
                       "pictures: {left_front: 'left_front/*.png', left: 'left/*.png'}\n"
-                      "targets:\n  a: {board: '13x3,0.11'}\n  b: {board: '11x4,0.11'}\n"
-                      "  c: {board: '10x5,0.11'}\n  d: {board: '9x6,0.11'}\nstraight: ['0']\n");
+                      "targets: {a: {board: 0.yaml}, b: {board: 1.yaml}, c: {board: 2.yaml}, d: "
+                      "{board: 3.yaml},\n"
+                      "  e: {board: 4.yaml}}\nstraight: ['0']\n");
     ASSERT_EQ(HitchVerb({.session = session,
                          .out = folder_ / "out.yaml",
                          .json = folder_ / "figures.json",
