@@ -26,6 +26,7 @@ constexpr double kLeastSize = 0.005;
 constexpr double kLeastSizeStep = 0.001;
 constexpr double kSizeSigmas = 5;
 constexpr double kMostLeft = 0.8;
+constexpr double kNearlyAsGood = 1.05;
 constexpr std::size_t kMostChanges = 3;
 
 /// A problem in which something is another thing from some shot on.
@@ -80,7 +81,7 @@ class Search {
 
     /// The change that explains most, and the problem with it.
     std::optional<std::pair<UnitChange, Split>> Best() {
-        std::optional<std::pair<UnitChange, Split>> best;
+        std::vector<std::pair<UnitChange, Split>> found;
         for (const UnitChange& suspect : Suspects()) {
             Split split = With(suspect);
             std::optional<std::size_t> free_size;
@@ -88,11 +89,18 @@ class Search {
             const double cost = Adjust(split.problem, split.graph, split.places, free_size);
             UnitChange change = Measured(suspect, split);
             change.share_left = cost / cost_;
+            if (change.share_left > kMostLeft) continue;
             if (free_size && std::abs(change.size - 1) < kLeastSize) continue;
-            if (change.share_left > (best ? best->first.share_left : kMostLeft)) continue;
-            best.emplace(change, std::move(split));
+            found.emplace_back(change, std::move(split));
         }
-        return best;
+        const auto share_left = [](const auto& one) { return one.first.share_left; };
+        const auto best = std::ranges::min_element(found, {}, share_left);
+        if (best == found.end()) return std::nullopt;
+        for (const auto& other : found) {
+            if (&other != &*best && share_left(other) < kNearlyAsGood * share_left(*best))
+                best->first.rival = other.first.name;
+        }
+        return std::move(*best);
     }
 
  private:
@@ -277,15 +285,17 @@ std::vector<UnitChange> FindChanges(const UnitProblem& problem, const CameraGrap
 }
 
 std::string Describe(const UnitChange& change) {
+    const std::string rival = change.rival.empty() ? "" : " (or it was " + change.rival + ")";
     if (change.kind == UnitChange::Kind::kWrongSize) {
-        return Sentence("%s is %.1f %% %s than its board says: measure the board again",
+        return Sentence("%s is %.1f %% %s than its board says%s: measure the board again",
                         change.name.c_str(), 100 * std::abs(change.size - 1),
-                        change.size > 1 ? "larger" : "smaller");
+                        change.size > 1 ? "larger" : "smaller", rival.c_str());
     }
     const bool camera = change.kind == UnitChange::Kind::kCameraMoved;
-    return Sentence("%s %s moved between the shots %s and %s, by %.2f degrees and %.0f mm: %s",
+    return Sentence("%s %s moved between the shots %s and %s, by %.2f degrees and %.0f mm%s: %s",
                     camera ? "camera" : "target", change.name.c_str(), change.last_before.c_str(),
                     change.first_after.c_str(), change.turn_rad / kDegree, 1000 * change.shift_m,
+                    rival.c_str(),
                     camera ? "fix it, and take all pictures again"
                            : "say moves: true, or leave out the pictures on one side");
 }

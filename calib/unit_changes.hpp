@@ -22,6 +22,7 @@ struct UnitChange {
     double turn_rad = 0;        ///< of what moved
     double shift_m = 0;         ///< same
     double size = 1;            ///< printed over said
+    std::string rival{};        ///< what explains it as well: another camera or target; or empty
     double share_left = 1;      ///< of the robust cost, once it is taken into account
 };
 

@@ -92,6 +92,21 @@ TEST_F(UnitVerdictTest, NamesATargetThatMovedAndWhen) {
     EXPECT_THAT(reasons, testing::Not(Contains(HasSubstr("camera"))));
 }
 
+TEST_F(UnitVerdictTest, NamesBothWhereNobodyCanTellWhichOfTwoMoved) {
+    Shoot("1", "2");
+    yard_.T_unit_camera()[1] = yard_.T_unit_camera()[1] * Nudge(0.5, 0);
+    Shoot("3", "4");
+    // The camera sees one target, which nobody else sees.
+    constexpr std::size_t kFirstOfSecondCamera = tests::kBoardsBeforeEach;
+    std::erase_if(yard_.problem().sightings, [](const Sighting& s) {
+        return (s.camera == 1) != (s.target == kFirstOfSecondCamera);
+    });
+    const auto reasons = Judge();
+    EXPECT_THAT(reasons,
+                Contains(testing::AllOf(HasSubstr("moved between the shots 2 and 3"),
+                                        HasSubstr("left_front"), HasSubstr("(or it was "))));
+}
+
 TEST_F(UnitVerdictTest, NamesABoardThatIsNotAsLargeAsWasSaid) {
     Shoot("1", "2");
     for (Sighting& sighting : yard_.problem().sightings)
