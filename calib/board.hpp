@@ -72,6 +72,8 @@ std::string_view ToString(Pattern pattern);
 struct SeenCorner {
     int index = 0;  ///< of Board::Corner
     Eigen::Vector2d at_px = Eigen::Vector2d::Zero();
+
+    friend bool operator==(const SeenCorner&, const SeenCorner&) = default;
 };
 
 /// Those of one board in one picture, by rising index.
