@@ -87,6 +87,9 @@ std::vector<SeenTag> TagsIn(const cv::Mat& grey, std::span<const Board> boards, 
 }  // namespace
 
 std::vector<SeenCorners> DetectBoards(const cv::Mat& grey, std::span<const Board> boards) {
+    constexpr int kSmallest_px = 32;  // finding and refining need some room
+    if (std::min(grey.cols, grey.rows) < kSmallest_px)
+        return std::vector<SeenCorners>(boards.size());
     const auto tags = TagsIn(grey, boards, Pattern::kCharuco, ReadTags);
     const auto joined_tags = TagsIn(grey, boards, Pattern::kTags, ReadJoinedTags);
     std::vector<SeenCorners> seen;

@@ -135,8 +135,13 @@ double SeenTag::side_px() const {
 }
 
 Tags ReadTags(const cv::Mat& grey) {
+    constexpr double kSmall_px = 30;  // bits of a few pixels are read better when enlarged
+    const Reader reader;
     Tags tags;
-    Reader().Read({.grey = grey}, tags);
+    reader.Read({.grey = grey}, tags);
+    const bool small =
+        std::ranges::any_of(tags, [](const SeenTag& tag) { return tag.side_px() < kSmall_px; });
+    if (small) reader.Read(Enlarged(grey, Surroundings(tags, grey.size())), tags);
     return Unambiguous(std::move(tags));
 }
 

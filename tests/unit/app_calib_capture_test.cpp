@@ -10,6 +10,7 @@
 #include "calib/board_detector.hpp"
 #include "drivers/simulated_rig.hpp"
 #include "tests/support/board_scene.hpp"
+#include "tests/support/log_messages.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace hitchview::app {
@@ -55,10 +56,13 @@ class CaptureTest : public testing::Test {
                                  {.blur_px = 0.6, .supersampling = 2, .seed = 7}));
         }
     }
-    void Save(int number, const cv::Mat& picture) const {
+    [[nodiscard]] std::string Seen(int number) const {
         char name[32];
         std::snprintf(name, sizeof name, "/seen/%04d.png", number);
-        ASSERT_TRUE(cv::imwrite(folder_.path() + name, picture));
+        return folder_.path() + name;
+    }
+    void Save(int number, const cv::Mat& picture) const {
+        ASSERT_TRUE(cv::imwrite(Seen(number), picture));
     }
     [[nodiscard]] nlohmann::json Report() const {
         std::ifstream file(options_.json);
@@ -137,6 +141,26 @@ TEST_F(CaptureTest, BeforeASimulatedRigTheBoardIsHeldUntilItIsEnough) {
     EXPECT_EQ(Report()["cameras"].size(), 2U);
     const drivers::SimulatedRigGeometryTable truth = drivers::SimulatedRigGeometry(400, 260);
     EXPECT_NEAR(FocalFrom(Kept(), {400, 260}), truth[0].geometry.model.fx_px, 1);
+}
+
+TEST_F(CaptureTest, OneCameraOfARecordingIsLookedAt) {
+    HoldAnywhere(5);
+    auto log = std::make_unique<tests::MessageLog>(folder_ / "drive.lcm");
+    for (int i = 0; i < 5; ++i) {
+        tests::LoggedPicture picture{
+            .captured_ns = i * 33'000'000, .width_px = 480, .height_px = 300};
+        cv::imencode(".jpg", cv::imread(Seen(i)), picture.data);
+        for (int times = 0; times < 2; ++times) log->Picture("CAM_FRONT", picture);
+        log->Picture("CAM_REAR", picture);
+    }
+    log.reset();
+    options_.images.clear();
+    EXPECT_EQ(CaptureVerb(options_), 2) << "no source";
+    options_.log = folder_ / "drive.lcm";
+
+    EXPECT_EQ(CaptureVerb(options_), 1);
+    EXPECT_EQ(Report()["cameras"][0]["pictures"], 10);
+    EXPECT_GE(Kept().size(), 4U) << "those in which the board rests";
 }
 
 TEST_F(CaptureTest, WrongUseIsRefused) {

@@ -76,10 +76,13 @@ class DetectionTest : public testing::TestWithParam<std::tuple<Board, CameraMode
     [[nodiscard]] Errors ErrorsIn(const BoardSceneOptions& options) const {
         const auto& [board, lens] = GetParam();
         const BoardScene scene(lens);
+        const bool wide = lens.kind == CameraModel::Kind::kKannalaBrandt4;
+        const double distance_m = wide ? 0.7 : 0.9;
         Errors errors;
         for (const Vector2d& at : {Vector2d(480, 300), {280, 190}, {680, 390}, {480, 200}}) {
             const double tilt_rad = 0.6 * std::sin(at.x());
-            const PlacedBoard placed{board, Held(lens, board, at, 0.9, tilt_rad, at.y(), 0.2)};
+            const PlacedBoard placed{board,
+                                     Held(lens, board, at, distance_m, tilt_rad, at.y(), 0.2)};
             const cv::Mat1b picture =
                 scene.Render(Eigen::Isometry3d::Identity(), {&placed, 1}, options);
             errors.Add(Detect(picture, board), lens, placed);
@@ -206,6 +209,23 @@ TEST(BoardDetectorTest, NothingIsFoundWhereNoBoardIs) {
     for (const SeenCorners& seen :
          DetectBoards(picture, std::vector{kCheckerboard, kCharuco, kTagGrid}))
         EXPECT_TRUE(seen.empty());
+}
+
+TEST(BoardDetectorTest, APictureWithoutRoomHasNoBoard) {
+    const std::vector boards{kCheckerboard, kCharuco, kTagGrid};
+    for (const cv::Size& size : {cv::Size(0, 0), cv::Size(1, 400), cv::Size(31, 31)})
+        EXPECT_EQ(DetectBoards(cv::Mat1b(size, 200), boards), std::vector<SeenCorners>(3));
+}
+
+TEST(BoardDetectorTest, APartOfALargerPictureIsLookedAtAlone) {
+    const CameraModel lens = Fisheye(155);
+    const PlacedBoard placed{kTagGrid, Held(lens, kTagGrid, {480, 300}, 0.7)};
+    const cv::Mat1b picture = BoardScene(lens).Render(Eigen::Isometry3d::Identity(), {&placed, 1});
+    const cv::Rect part(200, 100, 500, 400);
+    const SeenCorners alone = Detect(picture(part).clone(), kTagGrid);
+
+    EXPECT_GT(alone.size(), 60U);
+    EXPECT_EQ(Detect(picture(part), kTagGrid), alone);
 }
 
 }  // namespace
