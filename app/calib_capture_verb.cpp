@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "app/calib_capture_source.hpp"
-#include "app/report.hpp"
+#include "app/calib_provenance.hpp"
 #include "calib/board_detector.hpp"
 #include "calib/view_keeper.hpp"
 
@@ -94,7 +94,8 @@ void Capture::Look(CameraCapture& camera, const cv::Mat1b& picture) const {
         camera.keeper.emplace(board_, Eigen::Vector2d(picture.cols, picture.rows), goals);
     }
     ++camera.frames;
-    const calib::SeenCorners corners = calib::DetectBoards(picture, {&board_, 1}).front();
+    const calib::SeenCorners corners =
+        calib::DetectBoards(picture, {&board_, 1}, calib::Search::kQuick).front();
     const auto answer = camera.keeper->Judge(corners, calib::LookAtCorners(picture, corners));
     camera.keeps = answer.keep;
     camera.advice = answer.advice;
@@ -235,7 +236,7 @@ int CaptureVerb(const CaptureOptions& options) {
         return Fail(kMachineFailed, problem);
     capture.Print();
     if (!options.json.empty()) {
-        const std::string problem = WriteJson(capture.Report(), options.json);
+        const std::string problem = WriteFigures(capture.Report(), options.command, options.json);
         if (!problem.empty()) return Fail(kMachineFailed, problem);
     }
     if (!capture.failure().empty()) return Fail(kWrongUse, capture.failure());

@@ -17,6 +17,7 @@ struct CaptureOptions {
     int views = 20;                           ///< of each camera, at least
     std::filesystem::path out{};              ///< folder: one folder for each camera in it
     std::filesystem::path json{};             ///< all figures; empty: none
+    std::string command{};                    ///< for the figures
     const std::atomic<bool>* stop = nullptr;  ///< set from outside: the source ends; null: never
 };
 

@@ -3,8 +3,8 @@
 #include <cstdio>
 
 #include "app/calib_hitch_report.hpp"
+#include "app/calib_provenance.hpp"
 #include "app/calib_unit_pictures.hpp"
-#include "app/report.hpp"
 #include "calib/hitch_session.hpp"
 
 namespace hitchview::app {
@@ -33,12 +33,13 @@ calib::UnitSession Looked(const calib::HitchSession& session) {
 std::string Save(const HitchOptions& options, const calib::HitchSession& session,
                  const calib::HitchSolution& solution, const Reasons& reasons) {
     std::string problem;
-    if (!options.json.empty()) problem = WriteJson(HitchJson(solution, reasons), options.json);
+    if (!options.json.empty())
+        problem = WriteFigures(HitchJson(solution, reasons), options.command, options.json);
     const bool writes = !options.out.empty() && (reasons.empty() || options.keeps_failed);
     if (!problem.empty() || !writes) return problem;
     calib::RigCalibration rig = calib::WithHitch(session.rig, solution);
     if (!reasons.empty()) rig.verdict = calib::Verdict::kFail;
-    rig.written_by = options.command;
+    rig.written_by = WrittenBy(options.command);
     return calib::SaveCalibration(rig, options.out);
 }
 
@@ -75,7 +76,9 @@ int FromLog(const HitchOptions& options) {
     const Reasons reasons = calib::JudgeAngles(*fit);
     PrintAngles(*fit, log.value(), reasons);
     const std::string failed =
-        options.json.empty() ? "" : WriteJson(AngleJson(*fit, log.value(), reasons), options.json);
+        options.json.empty()
+            ? ""
+            : WriteFigures(AngleJson(*fit, log.value(), reasons), options.command, options.json);
     if (!failed.empty()) return Fail(kMachineFailed, failed);
     return reasons.empty() ? 0 : kBad;
 }

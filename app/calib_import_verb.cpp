@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "app/calib_formats_verb.hpp"
+#include "app/calib_provenance.hpp"
 #include "calib/format_rig.hpp"
 #include "calib/lens_file.hpp"
 #include "hal/result.hpp"
@@ -82,7 +83,7 @@ int ImportLens(const CalibImportOptions& options, const std::vector<calib::UnitC
                                    ", must be one for a lens: choose it with --camera; --unit "
                                    "makes a rig of all");
     const std::string problem =
-        calib::SaveUncheckedLens(cameras.front().model, options.command, options.out);
+        calib::SaveUncheckedLens(cameras.front().model, WrittenBy(options.command), options.out);
     if (!problem.empty()) return Fail(kMachineFailed, problem);
     Print(cameras.front().name, cameras.front().model);
     return 0;
@@ -95,7 +96,7 @@ int ImportRig(const CalibImportOptions& options, const std::vector<calib::UnitCa
                                    ", must be X,Y,Z,ROLL,PITCH,YAW in metres and degrees");
     calib::AssembledRig rig = calib::AssembleRig(files, options.vehicle, T_unit_first);
     if (!rig.calibration) return Fail(kWrongUse, rig.error);
-    rig.calibration->written_by = options.command;
+    rig.calibration->written_by = WrittenBy(options.command);
     const std::string problem = calib::SaveCalibration(*rig.calibration, options.out);
     if (!problem.empty()) return Fail(kMachineFailed, problem);
     for (const auto& [name, camera] : rig.calibration->cameras) Print(name, camera.model);

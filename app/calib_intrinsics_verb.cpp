@@ -10,7 +10,7 @@
 
 #include "app/calib_intrinsics_report.hpp"
 #include "app/calib_pictures.hpp"
-#include "app/report.hpp"
+#include "app/calib_provenance.hpp"
 #include "calib/intrinsics.hpp"
 #include "calib/lens_file.hpp"
 #include "calib/rig_calibration.hpp"
@@ -67,22 +67,24 @@ hal::Checked<std::vector<Camera>> CamerasOf(const IntrinsicsOptions& options) {
 }
 
 /// Why there is nothing to solve; empty if there is.
-std::string Refusal(const BoardPictures& pictures, const IntrinsicsOptions& options) {
-    const std::string size = options.board.substr(0, options.board.find(','));
+std::string Refusal(const BoardPictures& pictures, const calib::Board& board) {
+    const std::string size = std::to_string(board.columns) + "x" + std::to_string(board.rows);
+    const bool whole = board.pattern == calib::Pattern::kCheckerboard;
     if (pictures.views.size() >= kFewestViews && 2 * pictures.larger_boards > pictures.views.size())
         return "the board goes on beyond " + size +
                " inner corners: count the corners between four squares, all of them";
     if (pictures.views.size() >= kFewestViews) return "";
-    return "a board of " + size + " inner corners is in " + std::to_string(pictures.views.size()) +
-           " of " + std::to_string(pictures.pictures) + " pictures, at least " +
-           std::to_string(kFewestViews) +
-           " are needed: count the corners between four squares, and let the whole board be seen";
+    return "the board (" + calib::Describe(board) + ") is in " +
+           std::to_string(pictures.views.size()) + " of " + std::to_string(pictures.pictures) +
+           " pictures, at least " + std::to_string(kFewestViews) + " are needed: " +
+           (whole ? "count the corners between four squares, and let the whole board be seen"
+                  : "is it this board, with these tags, and large enough in the picture?");
 }
 
-void FindIn(const IntrinsicsOptions& options, const calib::Board& board, Camera& camera) {
+void FindIn(const calib::Board& board, Camera& camera) {
     const auto found = FindBoards(camera.images, board);
     if (found) camera.pictures = found.value();
-    camera.problem = found ? Refusal(camera.pictures, options) : found.error();
+    camera.problem = found ? Refusal(camera.pictures, board) : found.error();
     if (!camera.problem.empty()) camera.code = kWrongUse;
 }
 
@@ -141,10 +143,12 @@ std::string Save(const IntrinsicsOptions& options, const std::vector<Camera>& ca
     for (const Camera& camera : cameras) {
         if (!camera.lens || camera.out.empty()) continue;
         if (camera.lens->verdict == calib::Verdict::kFail && !options.keeps_failed) continue;
-        const std::string problem = calib::SaveLens(*camera.lens, options.command, camera.out);
+        const std::string problem =
+            calib::SaveLens(*camera.lens, WrittenBy(options.command), camera.out);
         if (!problem.empty()) return problem;
     }
-    return options.json.empty() ? "" : WriteJson(AllFigures(cameras), options.json);
+    return options.json.empty() ? ""
+                                : WriteFigures(AllFigures(cameras), options.command, options.json);
 }
 
 }  // namespace
@@ -152,7 +156,7 @@ std::string Save(const IntrinsicsOptions& options, const std::vector<Camera>& ca
 CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
     CLI::App& verb =
         *app.add_subcommand("intrinsics",
-                            "Measure a lens from pictures of a chessboard, and judge the result.\n"
+                            "Measure a lens from pictures of a board, and judge the result.\n"
                             "Exit code 0: it may be driven with, 1: not, and why.\n"
                             "Example: hitchview-calib intrinsics --images 'front/*.jpg' --board "
                             "9x6,0.025 --model fisheye "
@@ -163,7 +167,7 @@ CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
                        "a folder of pictures for each camera, named as the camera is");
     source->require_option(1);
     verb.add_option("--board", options.board,
-                    "COLSxROWS,SQUARE_M: inner corners, side of a square in metres")
+                    "board file, or COLSxROWS,SQUARE_M: inner corners, side of a square in metres")
         ->required();
     verb.add_option("--model", options.model, "pinhole, or fisheye for 120 degrees and more")
         ->transform(CLI::CheckedTransformer(std::map<std::string, algo::CameraModel::Kind>{
@@ -180,12 +184,12 @@ CLI::App& AddIntrinsics(CLI::App& app, IntrinsicsOptions& options) {
 }
 
 int IntrinsicsVerb(const IntrinsicsOptions& options) {
-    const calib::ParsedBoard board = calib::ParseBoard(options.board);
+    const calib::ParsedBoard board = calib::ReadBoard(options.board);
     if (!board.board) return Fail(kWrongUse, board.error);
     auto found = CamerasOf(options);
     if (!found) return Fail(kWrongUse, found.error());
     std::vector<Camera>& cameras = found.value();
-    for (Camera& camera : cameras) FindIn(options, *board.board, camera);
+    for (Camera& camera : cameras) FindIn(*board.board, camera);
     MeasureAll(options, *board.board, cameras);
     for (const Camera& camera : cameras) Tell(camera);
     const bool has_one =

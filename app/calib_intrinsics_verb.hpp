@@ -11,7 +11,7 @@ namespace hitchview::app {
 struct IntrinsicsOptions {
     std::string images{};            ///< pattern of the shell, as 'front/*.jpg': one camera
     std::filesystem::path folder{};  ///< instead: a folder of pictures for each camera, by its name
-    std::string board{};             ///< COLSxROWS,SQUARE_M
+    std::string board{};             ///< as ReadBoard takes it
     algo::CameraModel::Kind model = algo::CameraModel::Kind::kKannalaBrandt4;
     std::filesystem::path out{};  ///< lens file, or the folder of those of all cameras; empty: none
     std::filesystem::path json{};  ///< all figures; empty: none

@@ -53,8 +53,9 @@ int main(int argc, char** argv) {
     CalibReportOptions report;
     CalibImportOptions imported;
     CalibExportOptions exported;
-    for (std::string* command : {&intrinsics.command, &unit.command, &hitch.command,
-                                 &verify.command, &report.command, &imported.command})
+    for (std::string* command :
+         {&capture.command, &intrinsics.command, &unit.command, &hitch.command, &verify.command,
+          &report.command, &imported.command})
         *command = CommandLine(argc, argv);
     const std::vector<Verb> verbs{
         {AddTarget(app, target), [&] { return TargetVerb(target); }},

@@ -1,11 +1,10 @@
 #include "app/calib_report_verb.hpp"
 
-#include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <optional>
 
+#include "app/calib_provenance.hpp"
 #include "app/calib_report.hpp"
 #include "calib/replace_file.hpp"
 #include "calib/sha256.hpp"
@@ -44,15 +43,6 @@ hal::Checked<ReportSource> Load(const std::filesystem::path& file) {
     return source;
 }
 
-std::string Now() {
-    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    char text[32] = "";
-    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &utc);
-    return text;
-}
-
 }  // namespace
 
 CLI::App& AddCalibReport(CLI::App& app, CalibReportOptions& options) {
@@ -73,7 +63,7 @@ int CalibReportVerb(const CalibReportOptions& options) {
         if (!source) return Fail(kWrongUse, source.error());
         sources.push_back(std::move(source.value()));
     }
-    const std::string html = CalibReport(sources, options.command + ", " + Now());
+    const std::string html = CalibReport(sources, WrittenBy(options.command));
     const std::string problem =
         calib::ReplaceFile(options.out, html, [](const auto&) { return std::string(); });
     return problem.empty() ? 0 : Fail(kMachineFailed, problem);

@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 
+#include "app/calib_provenance.hpp"
 #include "app/calib_unit_pictures.hpp"
 #include "app/calib_unit_report.hpp"
 #include "app/calib_unit_view.hpp"
-#include "app/report.hpp"
 #include "calib/far_matches.hpp"
 #include "calib/unit_file.hpp"
 #include "calib/unit_verdict.hpp"
@@ -99,13 +99,14 @@ std::string Save(const UnitOptions& options, const Material& material) {
     const UnitFindings& findings = material.findings;
     const bool passed = findings.reasons.empty();
     std::string problem;
-    if (!options.json.empty()) problem = WriteJson(UnitJson(findings), options.json);
+    if (!options.json.empty())
+        problem = WriteFigures(UnitJson(findings), options.command, options.json);
     if (problem.empty() && !options.out.empty() && (passed || options.keeps_failed)) {
         const auto verdict = passed ? calib::Verdict::kPass : calib::Verdict::kFail;
-        problem =
-            calib::SaveCalibration(calib::WithUnit(material.into, findings.session,
-                                                   findings.solution, verdict, options.command),
-                                   options.out);
+        problem = calib::SaveCalibration(
+            calib::WithUnit(material.into, findings.session, findings.solution, verdict,
+                            WrittenBy(options.command)),
+            options.out);
     }
     if (problem.empty() && !(options.view.empty() && options.maps.empty()))
         problem = SaveView(options, material);

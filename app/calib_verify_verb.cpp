@@ -7,10 +7,10 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "app/calib_pictures.hpp"
+#include "app/calib_provenance.hpp"
 #include "app/calib_unit_pictures.hpp"
 #include "app/calib_unit_view.hpp"
 #include "app/config.hpp"
-#include "app/report.hpp"
 #include "calib/far_matches.hpp"
 #include "calib/rig_calibration.hpp"
 #include "calib/verification.hpp"
@@ -58,7 +58,7 @@ hal::Checked<Panorama> PanoramaOf(const std::filesystem::path& rig) {
 hal::Checked<std::vector<calib::UnitTarget>> TargetsOf(const std::vector<std::string>& boards) {
     std::vector<calib::UnitTarget> targets;
     for (const std::string& text : boards) {
-        const calib::ParsedBoard board = calib::ParseBoard(text);
+        const calib::ParsedBoard board = calib::ReadBoard(text);
         if (!board.board) return board.error;
         targets.push_back({.name = text, .board = *board.board, .moves = true});
     }
@@ -189,7 +189,6 @@ json FindingsJson(const Findings& findings, const calib::RigCalibration& calibra
     for (const auto& [title, path] : findings.pictures)
         pictures.push_back({{"title", title}, {"path", path}});
     return {{"verb", "verify"},
-            {"command", options.command},
             {"vehicle", calibration.vehicle},
             {"calibration", options.calibration.string()},
             {"calibration_id", calibration.id()},
@@ -249,8 +248,8 @@ int VerifyVerb(const VerifyOptions& options) {
     findings.checks.insert(findings.checks.end(), holes.begin(), holes.end());
     Print(findings);
     if (!options.json.empty()) {
-        const std::string why =
-            WriteJson(FindingsJson(findings, *loaded.calibration, options), options.json);
+        const std::string why = WriteFigures(FindingsJson(findings, *loaded.calibration, options),
+                                             options.command, options.json);
         if (!why.empty()) return Fail(kMachineFailed, why);
     }
     return findings.AreGood() ? 0 : kBad;

@@ -12,12 +12,10 @@ namespace {
 
 using Eigen::Vector2d;
 
-SeenCorners DetectCheckerboard(const cv::Mat& grey, const Board& board) {
-    SeenCorners seen;
-    const auto corners = DetectChessboard(grey, board);
-    for (int i = 0; corners && i < board.count(); ++i)
-        seen.push_back({i, (*corners)[static_cast<std::size_t>(i)]});
-    return seen;
+SeenCorners DetectCheckerboard(const cv::Mat& grey, const Board& board, Search search) {
+    const auto corners = search == Search::kQuick ? DetectChessboardQuickly(grey, board)
+                                                  : DetectChessboard(grey, board);
+    return corners ? AllCorners(*corners) : SeenCorners{};
 }
 
 /// What to expect at a corner of the board; its quarters reach `reach_m`.
@@ -86,7 +84,8 @@ std::vector<SeenTag> TagsIn(const cv::Mat& grey, std::span<const Board> boards, 
 
 }  // namespace
 
-std::vector<SeenCorners> DetectBoards(const cv::Mat& grey, std::span<const Board> boards) {
+std::vector<SeenCorners> DetectBoards(const cv::Mat& grey, std::span<const Board> boards,
+                                      Search search) {
     constexpr int kSmallest_px = 32;  // finding and refining need some room
     if (std::min(grey.cols, grey.rows) < kSmallest_px)
         return std::vector<SeenCorners>(boards.size());
@@ -96,7 +95,7 @@ std::vector<SeenCorners> DetectBoards(const cv::Mat& grey, std::span<const Board
     for (const Board& board : boards) {
         switch (board.pattern) {
             case Pattern::kCheckerboard:
-                seen.push_back(DetectCheckerboard(grey, board));
+                seen.push_back(DetectCheckerboard(grey, board, search));
                 break;
             case Pattern::kCharuco:
                 seen.push_back(DetectCharuco(grey, board, TagsOf(board, tags)));

@@ -103,6 +103,25 @@ std::vector<std::vector<int>> GridTurns(const Board& board) {
     return turns;
 }
 
+std::optional<std::vector<Vector2d>> DetectChessboardQuickly(const cv::Mat& grey,
+                                                             const Board& board) {
+    constexpr int kWidth_px = 640;
+    const int step = std::max(1, grey.cols / kWidth_px);
+    cv::Mat reduced = grey;
+    if (step > 1)
+        cv::resize(grey, reduced, {grey.cols / step, grey.rows / step}, 0, 0, cv::INTER_AREA);
+    Points corners;
+    if (!cv::findChessboardCornersSB(reduced, {board.columns, board.rows}, corners,
+                                     cv::CALIB_CB_NORMALIZE_IMAGE))
+        return std::nullopt;
+    const float scale_x = static_cast<float>(grey.cols) / static_cast<float>(reduced.cols);
+    const float scale_y = static_cast<float>(grey.rows) / static_cast<float>(reduced.rows);
+    for (cv::Point2f& corner : corners)
+        corner = {(corner.x + 0.5F) * scale_x - 0.5F, (corner.y + 0.5F) * scale_y - 0.5F};
+    Refine(grey, board, corners);
+    return Upright(corners, board);
+}
+
 std::optional<std::vector<Vector2d>> DetectChessboard(const cv::Mat& grey, const Board& board) {
     Points corners;
     if (!FindByContours(grey, board, corners) && !FindBySectors(grey, board, corners))

@@ -1,7 +1,5 @@
 #include "calib/lens_file.hpp"
 
-#include <yaml-cpp/emitter.h>
-
 #include <algorithm>
 
 #include "calib/camera_model_yaml.hpp"
@@ -10,12 +8,6 @@
 
 namespace hitchview::calib {
 namespace {
-
-std::string Quoted(const std::string& text) {
-    YAML::Emitter emitter;
-    emitter << YAML::DoubleQuoted << text;
-    return emitter.c_str();
-}
 
 std::string Quality(const Intrinsics& lens) {
     const auto used = std::ranges::count_if(lens.views, &ViewOutcome::is_used);

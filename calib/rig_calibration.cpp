@@ -1,7 +1,5 @@
 #include "calib/rig_calibration.hpp"
 
-#include <yaml-cpp/emitter.h>
-
 #include <numbers>
 #include <string_view>
 
@@ -17,12 +15,6 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr std::size_t kShownIdDigits = 12;
-
-std::string Quoted(const std::string& text) {
-    YAML::Emitter emitter;
-    emitter << YAML::DoubleQuoted << text;
-    return emitter.c_str();
-}
 
 std::string CameraText(const CalibratedCamera& camera) {
     const Quaterniond& q = camera.q_unit_camera;

@@ -1,5 +1,6 @@
 #include "calib/yaml_map.hpp"
 
+#include <yaml-cpp/emitter.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -234,6 +235,12 @@ YamlMap LoadYaml(const std::filesystem::path& file, YamlComplaints& complaints) 
 
 YamlMap ParseYaml(const std::string& text, YamlComplaints& complaints) {
     return RootOf(ParseYamlDocument(text), complaints);
+}
+
+std::string Quoted(const std::string& text) {
+    YAML::Emitter emitter;
+    emitter << YAML::DoubleQuoted << text;
+    return emitter.c_str();
 }
 
 std::string ExactText(double number) {

@@ -148,6 +148,9 @@ std::string ExactText(double number);
 /// The same for a list: `[1, 2]`.
 std::string ExactText(std::initializer_list<double> numbers);
 
+/// A scalar in double quotes that reads back as exactly `text`.
+std::string Quoted(const std::string& text);
+
 template <typename E, std::size_t kCount>
 void YamlValue::Read(const std::array<Choice<E>, kCount>& choices, E& out) const {
     std::vector<std::string_view> names;
