@@ -52,6 +52,9 @@ json FarJson(const UnitFindings& findings) {
                          {"matches", pair.matches},
                          {"before_px", findings.far.before[i].median_rad * kPixelsPerRad},
                          {"after_px", pair.median_rad * kPixelsPerRad}});
+        if (i >= findings.shown.after.size()) continue;
+        pairs.back()["before_png"] = findings.shown.before[i];
+        pairs.back()["after_png"] = findings.shown.after[i];
     }
     return pairs;
 }
@@ -76,17 +79,19 @@ json UnitJson(const UnitFindings& findings) {
     for (std::size_t i = 0; i < findings.solution.cameras.size(); ++i)
         cameras[findings.session.problem.cameras[i].name] =
             CameraJson(findings.solution.cameras[i]);
-    return {{"verb", "unit"},
-            {"unit", ToString(findings.session.unit)},
-            {"vehicle", findings.session.vehicle},
-            {"verdict", findings.reasons.empty() ? "pass" : "fail"},
-            {"reasons", findings.reasons},
-            {"notes", findings.graph.notes},
-            {"sigma_px", findings.solution.sigma_px},
-            {"survey_scale", findings.solution.prior_scale},
-            {"cameras", cameras},
-            {"sightings", SightingsJson(findings)},
-            {"far", FarJson(findings)}};
+    json figures{{"verb", "unit"},
+                 {"unit", ToString(findings.session.unit)},
+                 {"vehicle", findings.session.vehicle},
+                 {"verdict", findings.reasons.empty() ? "pass" : "fail"},
+                 {"reasons", findings.reasons},
+                 {"notes", findings.graph.notes},
+                 {"sigma_px", findings.solution.sigma_px},
+                 {"survey_scale", findings.solution.prior_scale},
+                 {"cameras", cameras},
+                 {"sightings", SightingsJson(findings)},
+                 {"far", FarJson(findings)}};
+    if (!findings.shown.view.empty()) figures["view_png"] = findings.shown.view;
+    return figures;
 }
 
 void PrintUnit(const UnitFindings& findings) {

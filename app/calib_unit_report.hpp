@@ -17,12 +17,20 @@ struct FarAlignment {
     std::vector<calib::NeighbourMisalignment> after{};
 };
 
+/// Pictures of the unit's view that were written, to be looked at.
+struct UnitPictureFiles {
+    std::string view{};                 ///< empty: none
+    std::vector<std::string> before{};  ///< of each pair of FarAlignment: its seam, targets alone
+    std::vector<std::string> after{};
+};
+
 /// Everything that was found out about a unit.
 struct UnitFindings {
     calib::UnitSession session{};
     calib::CameraGraph graph{};
     calib::UnitSolution solution{};
     FarAlignment far{};
+    UnitPictureFiles shown{};
     std::vector<std::string> reasons{};  ///< empty: it may be driven with
 };
 

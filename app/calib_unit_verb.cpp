@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
+#include <utility>
 
 #include "app/calib_provenance.hpp"
 #include "app/calib_unit_pictures.hpp"
@@ -28,6 +29,7 @@ struct Material {
     UnitFindings findings{};
     std::optional<calib::RigCalibration> into{};
     UnitPictures pictures{};
+    std::optional<calib::UnitSolution> without_far{};  ///< from targets alone
 };
 
 /// Empty, or why there is nothing to work with.
@@ -63,7 +65,7 @@ std::string Refine(Material& material) {
     auto refined = calib::SolveUnitFrom(before, problem, findings.graph);
     if (!refined) return "what is far away does not fit the targets";
     findings.far.before = calib::Misalignments(problem, before.T_unit_camera);
-    findings.solution = std::move(*refined);
+    material.without_far = std::exchange(findings.solution, std::move(*refined));
     findings.far.after = calib::Misalignments(problem, findings.solution.places.T_unit_camera);
     return "";
 }
@@ -79,27 +81,57 @@ std::string ShotToShow(const Material& material) {
         ->first;
 }
 
-std::string SaveView(const UnitOptions& options, const Material& material) {
-    const UnitFindings& findings = material.findings;
-    const algo::UnitGeometry geometry = SemiSurroundOf(findings.session, findings.solution);
-    if (!options.view.empty()) {
-        const auto shown =
-            ReadShot(findings.session, material.pictures, ShotToShow(material), cv::IMREAD_COLOR);
-        if (!shown) return shown.error();
-        if (!cv::imwrite(options.view.string(), DrawView(geometry, shown.value())))
-            return options.view.string() + ": cannot be written";
+/// The seam of each pair in a view, as files; their names.
+std::vector<std::string> SaveSeams(const UnitOptions& options, const UnitFindings& findings,
+                                   const calib::UnitSolution& solution,
+                                   const std::vector<cv::Mat>& shown, const std::string& when) {
+    const algo::UnitGeometry geometry = SemiSurroundOf(findings.session, solution);
+    const cv::Mat3b view = DrawView(geometry, shown);
+    std::vector<std::string> files;
+    for (const calib::NeighbourMisalignment& pair : findings.far.after) {
+        const auto& cameras = findings.session.problem.cameras;
+        const std::string name = options.view.stem().string() + "_" + cameras[pair.first].name +
+                                 "_" + cameras[pair.second].name + "_" + when + ".png";
+        const std::filesystem::path file =
+            std::filesystem::absolute(options.view).parent_path() / name;
+        cv::imwrite(file.string(),
+                    CropSeam(geometry, view, solution.cameras[pair.first].T_unit_camera,
+                             solution.cameras[pair.second].T_unit_camera));
+        files.push_back(file.string());
     }
+    return files;
+}
+
+std::string SaveView(const UnitOptions& options, Material& material) {
+    UnitFindings& findings = material.findings;
+    const algo::UnitGeometry geometry = SemiSurroundOf(findings.session, findings.solution);
+    const auto shown =
+        ReadShot(findings.session, material.pictures, ShotToShow(material), cv::IMREAD_COLOR);
+    if (!shown) return shown.error();
+    if (!cv::imwrite(options.view.string(), DrawView(geometry, shown.value())))
+        return options.view.string() + ": cannot be written";
+    findings.shown.view = std::filesystem::absolute(options.view).string();
+    if (!material.without_far) return "";
+    findings.shown.before =
+        SaveSeams(options, findings, *material.without_far, shown.value(), "before");
+    findings.shown.after = SaveSeams(options, findings, findings.solution, shown.value(), "after");
+    return "";
+}
+
+std::string SaveMaps(const UnitOptions& options, const UnitFindings& findings) {
     std::vector<std::string> names;
     for (const calib::UnitCamera& camera : findings.session.problem.cameras)
         names.push_back(camera.name);
-    return options.maps.empty() ? "" : WriteMaps(geometry, names, options.maps);
+    return WriteMaps(SemiSurroundOf(findings.session, findings.solution), names, options.maps);
 }
 
-std::string Save(const UnitOptions& options, const Material& material) {
+std::string Save(const UnitOptions& options, Material& material) {
     const UnitFindings& findings = material.findings;
     const bool passed = findings.reasons.empty();
     std::string problem;
-    if (!options.json.empty())
+    if (!options.view.empty()) problem = SaveView(options, material);
+    if (problem.empty() && !options.maps.empty()) problem = SaveMaps(options, findings);
+    if (problem.empty() && !options.json.empty())
         problem = WriteFigures(UnitJson(findings), options.command, options.json);
     if (problem.empty() && !options.out.empty() && (passed || options.keeps_failed)) {
         const auto verdict = passed ? calib::Verdict::kPass : calib::Verdict::kFail;
@@ -108,8 +140,6 @@ std::string Save(const UnitOptions& options, const Material& material) {
                             WrittenBy(options.command)),
             options.out);
     }
-    if (problem.empty() && !(options.view.empty() && options.maps.empty()))
-        problem = SaveView(options, material);
     return problem;
 }
 

@@ -1,5 +1,6 @@
 #include "app/calib_unit_view.hpp"
 
+#include <algorithm>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -51,6 +52,19 @@ cv::Mat3b DrawView(const UnitGeometry& geometry, std::span<const cv::Mat> pictur
     cv::Mat3b view;
     sum.convertTo(view, CV_8U);
     return view;
+}
+
+cv::Mat3b CropSeam(const UnitGeometry& geometry, const cv::Mat3b& view,
+                   const Eigen::Isometry3d& T_unit_first, const Eigen::Isometry3d& T_unit_second) {
+    constexpr int kHalfWidth_px = 250;
+    constexpr int kHalfHeight_px = 150;
+    Eigen::Vector3d middle = T_unit_first.linear().col(2) + T_unit_second.linear().col(2);
+    middle.z() = 0;
+    const Eigen::Vector2d at = geometry.view().Pixel(middle);
+    const int x = std::clamp(static_cast<int>(at.x()), kHalfWidth_px, view.cols - kHalfWidth_px);
+    const int y = std::clamp(static_cast<int>(at.y()), kHalfHeight_px, view.rows - kHalfHeight_px);
+    return view(
+        cv::Rect(x - kHalfWidth_px, y - kHalfHeight_px, 2 * kHalfWidth_px, 2 * kHalfHeight_px));
 }
 
 std::string WriteMaps(const UnitGeometry& geometry, const std::vector<std::string>& names,

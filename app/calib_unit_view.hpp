@@ -20,6 +20,10 @@ algo::UnitGeometry SemiSurroundOf(const calib::UnitSession& session,
 /// Pictures of one moment in it, in colour; black where no camera sees anything.
 cv::Mat3b DrawView(const algo::UnitGeometry& geometry, std::span<const cv::Mat> pictures);
 
+/// What of a view lies about the middle between the axes of two of its cameras, at the horizon.
+cv::Mat3b CropSeam(const algo::UnitGeometry& geometry, const cv::Mat3b& view,
+                   const Eigen::Isometry3d& T_unit_first, const Eigen::Isometry3d& T_unit_second);
+
 /// Writes where each camera is shown: `FOLDER/CAMERA.tiff`, as large as the view, three 32-bit
 /// floats for each pixel: column and row in the camera's picture and its share, 0..1; -1, -1, 0
 /// where it has none. Empty on success, otherwise what went wrong.
