@@ -130,7 +130,7 @@ std::string UncertaintyMap(const json& places, const PictureSize& size) {
         const double y = point[1] * scale - height / 2;
         svg += SvgBox(x, y, width, height, "cell uncertain",
                       0.75 * std::log(sigma_px / kBest_px) / std::log(kWorst_px / kBest_px));
-        svg += CellText(x, y, width, height, Short(point[2], 2));
+        svg += CellText(x, y, width, height, Short(point[2], 1));
     }
     return MapFigure(Frame(size, scale, "Uncertainty", svg),
                      "How far a distant point may be from where the lens puts it, px, standard "

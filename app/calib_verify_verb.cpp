@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 
@@ -10,6 +9,8 @@
 #include "app/calib_provenance.hpp"
 #include "app/calib_unit_pictures.hpp"
 #include "app/calib_unit_view.hpp"
+#include "app/calib_verify_log.hpp"
+#include "app/calib_verify_report.hpp"
 #include "app/config.hpp"
 #include "calib/far_matches.hpp"
 #include "calib/rig_calibration.hpp"
@@ -17,8 +18,6 @@
 
 namespace hitchview::app {
 namespace {
-
-using nlohmann::json;
 
 constexpr int kBad = 1;
 constexpr int kWrongUse = 2;
@@ -67,7 +66,7 @@ hal::Checked<std::vector<calib::UnitTarget>> TargetsOf(const std::vector<std::st
 
 /// A unit as its calibration has it.
 calib::UnitSession SessionOf(const calib::RigCalibration& calibration, algo::Unit unit,
-                             const VerifyOptions& options,
+                             const std::filesystem::path& folder,
                              const std::vector<calib::UnitTarget>& targets) {
     calib::UnitSession session{.unit = unit, .vehicle = calibration.vehicle};
     session.problem.targets = targets;
@@ -80,7 +79,7 @@ calib::UnitSession SessionOf(const calib::RigCalibration& calibration, algo::Uni
              .model = geometry.model,
              .yaw_rad = std::atan2(axis.y(), axis.x()),
              .pose = calib::MeasuredPose{.T_unit_camera = geometry.T_unit_camera}});
-        session.pictures.push_back((options.pictures / name / "*").string());
+        session.pictures.push_back((folder / name / "*").string());
     }
     return session;
 }
@@ -121,16 +120,8 @@ std::string AddFarMatches(const UnitPictures& pictures, calib::UnitSession& sess
     return "";
 }
 
-/// What was found out.
-struct Findings {
-    std::vector<calib::Check> checks{};
-    std::vector<std::pair<std::string, std::string>> pictures{};  ///< title, file
-
-    [[nodiscard]] bool AreGood() const { return std::ranges::all_of(checks, &calib::Check::ok); }
-};
-
 std::string Draw(const calib::UnitSession& session, const UnitPictures& pictures,
-                 const std::filesystem::path& folder, Findings& findings) {
+                 const std::filesystem::path& folder, VerifyFindings& findings) {
     const std::vector<std::string> shots = WholeShots(pictures);
     if (folder.empty() || shots.empty()) return "";
     std::error_code refused;
@@ -158,8 +149,8 @@ struct Failure {
 
 Failure CheckUnit(const calib::RigCalibration& calibration, algo::Unit unit,
                   const VerifyOptions& options, const std::vector<calib::UnitTarget>& targets,
-                  const Panorama& panorama, Findings& findings) {
-    calib::UnitSession session = SessionOf(calibration, unit, options, targets);
+                  const Panorama& panorama, VerifyFindings& findings) {
+    calib::UnitSession session = SessionOf(calibration, unit, options.pictures, targets);
     if (session.problem.cameras.empty()) return {};
     const auto pictures = LookAtUnit(session);
     if (!pictures) return {kWrongUse, pictures.error()};
@@ -172,40 +163,34 @@ Failure CheckUnit(const calib::RigCalibration& calibration, algo::Unit unit,
     return why.empty() ? Failure{} : Failure{kMachineFailed, why};
 }
 
-json FindingsJson(const Findings& findings, const calib::RigCalibration& calibration,
-                  const VerifyOptions& options) {
-    json checks = json::array();
-    json reasons = json::array();
-    for (const calib::Check& check : findings.checks) {
-        checks.push_back({{"name", check.name},
-                          {"figure", check.figure},
-                          {"limit", check.limit ? json(*check.limit) : json(nullptr)},
-                          {"unit", check.unit},
-                          {"ok", check.ok},
-                          {"reason", check.reason}});
-        if (!check.ok) reasons.push_back(check.name + ": " + check.reason);
-    }
-    json pictures = json::array();
-    for (const auto& [title, path] : findings.pictures)
-        pictures.push_back({{"title", title}, {"path", path}});
-    return {{"verb", "verify"},
-            {"vehicle", calibration.vehicle},
-            {"calibration", options.calibration.string()},
-            {"calibration_id", calibration.id()},
-            {"verdict", findings.AreGood() ? "pass" : "fail"},
-            {"reasons", reasons},
-            {"checks", checks},
-            {"pictures", pictures}};
+std::vector<std::string> NamesOf(const calib::RigCalibration& calibration) {
+    std::vector<std::string> names;
+    for (const auto& [name, camera] : calibration.cameras) names.push_back(name);
+    return names;
 }
 
-void Print(const Findings& findings) {
-    for (const calib::Check& check : findings.checks) {
-        std::printf("%-5s %s: %.2f %s", check.ok ? "good" : "BAD", check.name.c_str(), check.figure,
-                    check.unit.c_str());
-        if (check.limit) std::printf(" (at most %.2f)", *check.limit);
-        std::printf("%s%s\n", check.reason.empty() ? "" : "; ", check.reason.c_str());
+int Verify(const calib::RigCalibration& calibration, const VerifyOptions& options) {
+    const auto panorama = PanoramaOf(options.rig);
+    if (!panorama) return Fail(kWrongUse, panorama.error());
+    const auto targets = TargetsOf(options.boards);
+    if (!targets) return Fail(kWrongUse, targets.error());
+    VerifyFindings findings;
+    for (const algo::Unit unit : algo::kUnits) {
+        const Failure failure =
+            CheckUnit(calibration, unit, options, targets.value(), panorama.value(), findings);
+        if (failure.code != 0) return Fail(failure.code, failure.why);
     }
-    std::printf("verdict: %s\n", findings.AreGood() ? "pass" : "fail");
+    const auto holes = calib::CheckHoles(
+        calib::FindHoles(calibration, panorama.value().canvas, panorama.value().surface));
+    findings.checks.insert(findings.checks.end(), holes.begin(), holes.end());
+    PrintVerify(findings);
+    if (!options.json.empty()) {
+        const std::string why =
+            WriteFigures(VerifyJson(findings, calibration, options.calibration.string()),
+                         options.command, options.json);
+        if (!why.empty()) return Fail(kMachineFailed, why);
+    }
+    return findings.AreGood() ? 0 : kBad;
 }
 
 }  // namespace
@@ -218,10 +203,12 @@ CLI::App& AddVerify(CLI::App& app, VerifyOptions& options) {
         "Exit code 0: it still holds, 1: not, and why.\n"
         "Example: hitchview-calib verify --calibration rig.calib.yaml --pictures today/");
     verb.add_option("--calibration", options.calibration, "rig calibration")->required();
-    verb.add_option("--pictures", options.pictures,
-                    "a folder of pictures for each camera, named as the camera is; pictures of one "
-                    "moment have the same name")
-        ->required();
+    auto* const source = verb.add_option_group("fresh pictures");
+    source->add_option("--pictures", options.pictures,
+                       "a folder of pictures for each camera, named as the camera is; pictures of "
+                       "one moment have the same name");
+    source->add_option("--log", options.logs, "a recorded drive: log files, or folders of them");
+    source->require_option(1);
     verb.add_option("--board", options.boards, "a board that is in them, as in intrinsics");
     verb.add_option("--rig", options.rig,
                     "rig file whose panorama it is; otherwise one of 4096 x 720");
@@ -233,26 +220,12 @@ CLI::App& AddVerify(CLI::App& app, VerifyOptions& options) {
 int VerifyVerb(const VerifyOptions& options) {
     const calib::LoadedCalibration loaded = calib::LoadCalibration(options.calibration);
     if (!loaded.calibration) return Fail(kWrongUse, loaded.error);
-    const auto panorama = PanoramaOf(options.rig);
-    if (!panorama) return Fail(kWrongUse, panorama.error());
-    const auto targets = TargetsOf(options.boards);
-    if (!targets) return Fail(kWrongUse, targets.error());
-    Findings findings;
-    for (const algo::Unit unit : algo::kUnits) {
-        const Failure failure = CheckUnit(*loaded.calibration, unit, options, targets.value(),
-                                          panorama.value(), findings);
-        if (failure.code != 0) return Fail(failure.code, failure.why);
-    }
-    const auto holes = calib::CheckHoles(
-        calib::FindHoles(*loaded.calibration, panorama.value().canvas, panorama.value().surface));
-    findings.checks.insert(findings.checks.end(), holes.begin(), holes.end());
-    Print(findings);
-    if (!options.json.empty()) {
-        const std::string why = WriteFigures(FindingsJson(findings, *loaded.calibration, options),
-                                             options.command, options.json);
-        if (!why.empty()) return Fail(kMachineFailed, why);
-    }
-    return findings.AreGood() ? 0 : kBad;
+    if (options.logs.empty()) return Verify(*loaded.calibration, options);
+    const auto drive = DrivePictures::Take(options.logs, NamesOf(*loaded.calibration));
+    if (!drive) return Fail(kWrongUse, drive.error());
+    VerifyOptions with_pictures = options;
+    with_pictures.pictures = drive.value().path();
+    return Verify(*loaded.calibration, with_pictures);
 }
 
 }  // namespace hitchview::app

@@ -9,12 +9,13 @@ namespace hitchview::app {
 
 struct VerifyOptions {
     std::filesystem::path calibration{};
-    std::filesystem::path pictures{};   ///< a folder for each camera, by its name
-    std::vector<std::string> boards{};  ///< that are in them
-    std::filesystem::path rig{};        ///< whose panorama it is; empty: 4096 x 720
-    std::filesystem::path json{};       ///< all figures; empty: none
-    std::filesystem::path view{};       ///< folder for pictures to look at; empty: none
-    std::string command{};              ///< for the figures
+    std::filesystem::path pictures{};           ///< a folder for each camera, by its name
+    std::vector<std::filesystem::path> logs{};  ///< instead: a recorded drive
+    std::vector<std::string> boards{};          ///< that are in them
+    std::filesystem::path rig{};                ///< whose panorama it is; empty: 4096 x 720
+    std::filesystem::path json{};               ///< all figures; empty: none
+    std::filesystem::path view{};               ///< folder for pictures to look at; empty: none
+    std::string command{};                      ///< for the figures
 };
 
 CLI::App& AddVerify(CLI::App& app, VerifyOptions& options);
