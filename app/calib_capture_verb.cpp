@@ -10,6 +10,7 @@
 
 #include "app/calib_capture_source.hpp"
 #include "app/calib_provenance.hpp"
+#include "app/exit_code.hpp"
 #include "calib/board_detector.hpp"
 #include "calib/view_keeper.hpp"
 
@@ -19,15 +20,6 @@ namespace {
 using calib::Tilt;
 using calib::ViewKeeper;
 using nlohmann::json;
-
-constexpr int kBad = 1;
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 /// One camera's part of the work.
 struct CameraCapture {

@@ -1,19 +1,12 @@
 #include <cstdio>
 
 #include "app/calib_formats_verb.hpp"
+#include "app/exit_code.hpp"
 #include "calib/lens_file.hpp"
 #include "calib/replace_file.hpp"
 
 namespace hitchview::app {
 namespace {
-
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 void WarnOf(calib::Verdict verdict, const std::filesystem::path& file) {
     if (verdict == calib::Verdict::kPass) return;

@@ -5,19 +5,11 @@
 #include "app/calib_hitch_report.hpp"
 #include "app/calib_provenance.hpp"
 #include "app/calib_unit_pictures.hpp"
+#include "app/exit_code.hpp"
 #include "calib/hitch_session.hpp"
 
 namespace hitchview::app {
 namespace {
-
-constexpr int kBad = 1;
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 /// The cameras and targets as the pictures of a unit are looked at.
 calib::UnitSession Looked(const calib::HitchSession& session) {

@@ -4,20 +4,13 @@
 
 #include "app/calib_formats_verb.hpp"
 #include "app/calib_provenance.hpp"
+#include "app/exit_code.hpp"
 #include "calib/format_rig.hpp"
 #include "calib/lens_file.hpp"
 #include "hal/result.hpp"
 
 namespace hitchview::app {
 namespace {
-
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 hal::Checked<algo::Unit> UnitOf(const CalibImportOptions& options, std::size_t file) {
     if (options.units.size() > 1 && options.units.size() != options.in.size())

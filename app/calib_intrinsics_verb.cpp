@@ -11,6 +11,7 @@
 #include "app/calib_intrinsics_report.hpp"
 #include "app/calib_pictures.hpp"
 #include "app/calib_provenance.hpp"
+#include "app/exit_code.hpp"
 #include "calib/intrinsics.hpp"
 #include "calib/lens_file.hpp"
 #include "calib/rig_calibration.hpp"
@@ -21,10 +22,6 @@ namespace {
 using nlohmann::json;
 using std::filesystem::path;
 
-constexpr int kGood = 0;
-constexpr int kBad = 1;
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
 constexpr std::size_t kFewestViews = 3;
 
 /// One lens to measure.
@@ -37,11 +34,6 @@ struct Camera {
     std::string problem{};  ///< why there is no lens; empty: there is, or nothing was tried yet
     int code = kGood;
 };
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 hal::Checked<std::vector<Camera>> CamerasOf(const IntrinsicsOptions& options) {
     std::vector<Camera> cameras;

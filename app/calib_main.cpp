@@ -14,12 +14,11 @@
 #include "app/calib_target_verb.hpp"
 #include "app/calib_unit_verb.hpp"
 #include "app/calib_verify_verb.hpp"
+#include "app/exit_code.hpp"
 
 namespace {
 
 using namespace hitchview::app;
-
-constexpr int kWrongUse = 2;
 
 std::atomic<bool> stop{false};
 void Stop(int) {

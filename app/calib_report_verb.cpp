@@ -6,6 +6,7 @@
 
 #include "app/calib_provenance.hpp"
 #include "app/calib_report.hpp"
+#include "app/exit_code.hpp"
 #include "calib/replace_file.hpp"
 #include "calib/sha256.hpp"
 #include "hal/result.hpp"
@@ -13,14 +14,7 @@
 namespace hitchview::app {
 namespace {
 
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
 constexpr std::size_t kMaxFileBytes = 64 << 20;
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 std::optional<std::string> FileText(const std::filesystem::path& file) {
     std::error_code error;

@@ -5,18 +5,11 @@
 #include <string>
 
 #include "app/calib_sheet.hpp"
+#include "app/exit_code.hpp"
 #include "calib/replace_file.hpp"
 
 namespace hitchview::app {
 namespace {
-
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 std::string Save(const TargetOptions& options, const SheetPlan& plan, SheetFormat format) {
     const auto file = SheetFile(plan, format);

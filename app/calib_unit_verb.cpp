@@ -8,21 +8,13 @@
 #include "app/calib_unit_pictures.hpp"
 #include "app/calib_unit_report.hpp"
 #include "app/calib_unit_view.hpp"
+#include "app/exit_code.hpp"
 #include "calib/far_matches.hpp"
 #include "calib/unit_file.hpp"
 #include "calib/unit_verdict.hpp"
 
 namespace hitchview::app {
 namespace {
-
-constexpr int kBad = 1;
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 /// What there is to work with.
 struct Material {

@@ -12,21 +12,13 @@
 #include "app/calib_verify_log.hpp"
 #include "app/calib_verify_report.hpp"
 #include "app/config.hpp"
+#include "app/exit_code.hpp"
 #include "calib/far_matches.hpp"
 #include "calib/rig_calibration.hpp"
 #include "calib/verification.hpp"
 
 namespace hitchview::app {
 namespace {
-
-constexpr int kBad = 1;
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 /// The panorama that neighbours are compared in.
 struct Panorama {

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/exit_code.hpp"
 #include "app/report.hpp"
 #include "app/run_loop.hpp"
 #include "app/simulated_board.hpp"
@@ -15,15 +16,8 @@
 namespace hitchview::app {
 namespace {
 
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
 constexpr double kSimulatedSeconds = 10;
 constexpr double kMostSimulatedSeconds = 1200;
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 template <typename T>
 void Override(const std::optional<T>& given, T& value) {

@@ -4,20 +4,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "app/exit_code.hpp"
 #include "app/log_rig.hpp"
 #include "app/program.hpp"
 #include "app/report.hpp"
 
 namespace hitchview::app {
 namespace {
-
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 std::vector<std::string> EvalArguments(const RigConfig& config, const std::filesystem::path& out,
                                        const std::filesystem::path& json) {

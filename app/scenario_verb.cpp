@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/exit_code.hpp"
 #include "app/report.hpp"
 #include "app/scenario_table.hpp"
 #include "drivers/simulated_scenario.hpp"
@@ -11,13 +12,6 @@ namespace hitchview::app {
 namespace {
 
 constexpr int kStopped = 1;
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(int code, const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 /// A row takes minutes: it is not held back.
 void PrintNow(const std::string& text) {

@@ -20,6 +20,9 @@ optional_packages=(libcamera-dev libcamera-ipa)
 # A browser for the tests of the page: Ubuntu has it as a snap only, which this script leaves alone.
 browser_packages=(chromium chromium-driver)
 
+# Another calibration program, for the tests that compare with it.
+oracle_packages=(mrcal)
+
 is_installed() {
     [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
 }
@@ -65,6 +68,12 @@ install_browser() {
     install_once "${browser_packages[@]}" || echo "install_deps.sh: goes on without ${browser_packages[*]}" >&2
 }
 
+install_oracle() {
+    is_installed "${oracle_packages[0]}" && return
+    [[ "$(apt-cache policy "${oracle_packages[0]}" 2>/dev/null)" == *Candidate:\ [0-9]* ]] || return 0
+    install_once "${oracle_packages[@]}" || echo "install_deps.sh: goes on without ${oracle_packages[*]}" >&2
+}
+
 missing=()
 for package in "${packages[@]}"; do
     is_satisfied "$package" || missing+=("$package")
@@ -72,6 +81,7 @@ done
 if [[ ${#missing[@]} -eq 0 ]]; then
     install_optional
     install_browser
+    install_oracle
     exit 0
 fi
 
@@ -88,3 +98,4 @@ done
 install_once "${names[@]}" || { sleep 5 && install_once "${names[@]}"; }
 install_optional
 install_browser
+install_oracle

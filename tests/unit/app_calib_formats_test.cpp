@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "app/calib_formats_verb.hpp"
 #include "calib/lens_file.hpp"
 #include "tests/support/format_samples.hpp"
@@ -21,6 +23,12 @@ class CalibFormatsTest : public testing::Test {
     tests::TemporaryFolder folder_;
 };
 
+/// A file that the command "test" has written some day.
+std::string WithoutDate(const std::string& text) {
+    return std::regex_replace(text, std::regex(R"("test, 20\d\d-\d\d-\d\d \d\d:\d\d UTC")"),
+                              "\"test\"");
+}
+
 TEST_F(CalibFormatsTest, ALensGoesOutAndComesBackUnchecked) {
     const algo::CameraModel lens = tests::FormatSamples(1).Lens(Kind::kKannalaBrandt4);
     ASSERT_EQ(calib::SaveUncheckedLens(lens, "test", folder_ / "lens.yaml"), "");
@@ -34,7 +42,8 @@ TEST_F(CalibFormatsTest, ALensGoesOutAndComesBackUnchecked) {
                                .out = folder_ / "back.yaml",
                                .command = "test"}),
               0);
-    EXPECT_EQ(tests::FileText(folder_ / "back.yaml"), tests::FileText(folder_ / "lens.yaml"));
+    EXPECT_EQ(WithoutDate(tests::FileText(folder_ / "back.yaml")),
+              tests::FileText(folder_ / "lens.yaml"));
 }
 
 TEST_F(CalibFormatsTest, ARigGoesThroughKalibrsChainsOfItsUnits) {
