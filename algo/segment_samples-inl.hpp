@@ -62,7 +62,10 @@ class Window {
         if constexpr (kVectors == 1) {
             low_ = bytes;
         } else {
-            low_ = hn::SaturatedAdd(bytes, hn::Set(d, std::uint8_t{0x70}));
+            // Indices with the top bit read 0. What those from 16 up to it read is not the same
+            // everywhere.
+            const V8 beyond = hn::SaturatedAdd(bytes, hn::Set(d, std::uint8_t{0x70}));
+            low_ = hn::And(beyond, hn::Set(d, std::uint8_t{0x8F}));
             high_ = hn::Sub(bytes, hn::Set(d, std::uint8_t{16}));
         }
     }

@@ -2,16 +2,19 @@
 # Installs what Hitchview needs to build and test, from the packages of Debian 12 or Ubuntu 22.04.
 # Returns at once when everything is there.
 #
-#   toolchain/install_deps.sh
+#   toolchain/install_deps.sh [--libraries]     --libraries: only prints the packages that Hitchview is compiled against
 set -euo pipefail
 
-packages=(
-    g++ cmake ninja-build ccache pkg-config
-    libeigen3-dev libopencv-dev libhwy-dev liblcm-dev liblcm-bin libyaml-cpp-dev libcli11-dev
-    nlohmann-json3-dev libturbojpeg0-dev libjpeg-dev libmicrohttpd-dev libceres-dev libapriltag-dev libcairo2-dev
-    libgtest-dev libgmock-dev libbenchmark-dev
+tools=(
+    g++ cmake ninja-build ccache pkg-config liblcm-bin
     iproute2 util-linux qemu-user ffmpeg python3
 )
+libraries=(
+    libeigen3-dev libopencv-dev libhwy-dev liblcm-dev libyaml-cpp-dev libcli11-dev
+    nlohmann-json3-dev libturbojpeg0-dev libjpeg-dev libmicrohttpd-dev libceres-dev libapriltag-dev libcairo2-dev
+    libgtest-dev libgmock-dev libbenchmark-dev
+)
+packages=("${tools[@]}" "${libraries[@]}")
 
 # Taken where the release has libcamera 0.0.3 or later: Ubuntu 22.04 has not.
 # The second has what its pipelines load, vimc's among them.
@@ -22,6 +25,11 @@ browser_packages=(chromium chromium-driver)
 
 # Another calibration program, for the tests that compare with it.
 oracle_packages=(mrcal)
+
+if [[ ${1:-} == --libraries ]]; then
+    printf '%s\n' "${libraries[@]}"
+    exit 0
+fi
 
 is_installed() {
     [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
