@@ -1,28 +1,18 @@
 #include "app/calib_capture_source.hpp"
 
-#include <glob.h>
-
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "app/board.hpp"
+#include "app/file_pattern.hpp"
 #include "app/log_pictures.hpp"
 #include "calib/board_pattern.hpp"
 #include "drivers/simulated_sheet.hpp"
 
 namespace hitchview::app {
 namespace {
-
-std::vector<std::string> FilesNamed(const std::string& pattern) {
-    glob_t found{};
-    std::vector<std::string> files;
-    if (glob(pattern.c_str(), 0, nullptr, &found) == 0)
-        files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
-    globfree(&found);
-    return files;
-}
 
 class Pictures final : public CaptureSource {
  public:
@@ -157,7 +147,7 @@ class Rig final : public CaptureSource {
 
 hal::Checked<std::unique_ptr<CaptureSource>> OpenPictures(const std::string& pattern,
                                                           const std::string& camera) {
-    std::vector<std::string> files = FilesNamed(pattern);
+    std::vector<std::string> files = FilesLike(pattern);
     if (files.empty()) return "no file is named " + pattern;
     return std::unique_ptr<CaptureSource>(std::make_unique<Pictures>(std::move(files), camera));
 }

@@ -1,6 +1,5 @@
 #include "app/calib_pictures.hpp"
 
-#include <glob.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -60,15 +59,6 @@ std::string Text(const cv::Size& size_px) {
 }
 
 }  // namespace
-
-std::vector<std::string> FilesLike(const std::string& pattern) {
-    glob_t found{};
-    std::vector<std::string> files;
-    if (glob(pattern.c_str(), 0, nullptr, &found) == 0)
-        files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
-    globfree(&found);
-    return files;
-}
 
 void ShowProgress(const char* what, std::size_t done, std::size_t all, const char* of_what) {
     if (isatty(STDERR_FILENO) == 0) return;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "app/file_pattern.hpp"
 #include "calib/board.hpp"
 #include "hal/result.hpp"
 
@@ -16,9 +17,6 @@ struct BoardPictures {
     std::vector<calib::BoardView> views{};  ///< those with the whole board
     std::size_t larger_boards = 0;  ///< of these, those whose board goes on beyond its corners
 };
-
-/// Files that a pattern of the shell names, by name.
-std::vector<std::string> FilesLike(const std::string& pattern);
 
 /// Where a person sits before it: one line on stderr that says how far it is.
 void ShowProgress(const char* what, std::size_t done, std::size_t all, const char* of_what);

@@ -24,7 +24,7 @@ constexpr double kRough_rad = 0.05;
 constexpr double kHalfView = 1.2;  // tangent of the angle from the middle of the view to its edge
 constexpr double kClearly = 0.75;  // best over second best distance of descriptors
 constexpr int kFewestPixels = 2000;
-constexpr int kMostFeatures = 1500;
+constexpr int kMostFeatures = 3000;
 /// Features that reach across the edge of what both see would be of the edge.
 constexpr int kEdge_px = 8;
 

@@ -22,6 +22,8 @@ using nlohmann::json;
 using tests::CalibOutcome;
 using tests::RunCalib;
 
+/// As many as a person takes.
+constexpr int kViews = 30;
 constexpr Board kBoard{.columns = 9, .rows = 6, .square_m = 0.07};
 
 algo::CameraModel HalfSize(algo::CameraModel lens) {
@@ -67,13 +69,13 @@ void ExpectLens(const json& found, const algo::CameraModel& truth) {
 
 TEST_F(CalibIntrinsicsTest, NoisyPicturesInChangingLightGiveAFisheyeBack) {
     const algo::CameraModel truth = HalfSize(tests::FisheyeLens());
-    Take(truth, 16);
+    Take(truth, kViews);
     const CalibOutcome outcome = Measure("9x6,0.07");
 
     ASSERT_EQ(outcome.code, 0) << outcome.text;
     const json figures = ReadJson(folder_ / "lens.json");
     EXPECT_EQ(figures["verdict"], "pass");
-    EXPECT_EQ(figures["views_found"], 16);
+    EXPECT_EQ(figures["views_found"], kViews);
     EXPECT_LT(figures["rms_px"], 0.15);
     EXPECT_LT(figures["heldout_rms_px"], 0.2);
     ExpectLens(figures["lens"], truth);
@@ -82,7 +84,7 @@ TEST_F(CalibIntrinsicsTest, NoisyPicturesInChangingLightGiveAFisheyeBack) {
 
 TEST_F(CalibIntrinsicsTest, AndAPinhole) {
     const algo::CameraModel truth = HalfSize(tests::PinholeLens());
-    Take(truth, 16);
+    Take(truth, kViews);
     const CalibOutcome outcome = Measure("9x6,0.07", "pinhole");
 
     ASSERT_EQ(outcome.code, 0) << outcome.text;
