@@ -31,7 +31,7 @@ std::string Save(const HitchOptions& options, const calib::HitchSession& session
     if (!problem.empty() || !writes) return problem;
     calib::RigCalibration rig = calib::WithHitch(session.rig, solution);
     if (!reasons.empty()) rig.verdict = calib::Verdict::kFail;
-    rig.written_by = WrittenBy(options.command);
+    rig.written_by = WrittenBy(options.command, calib::HitchLimits());
     return calib::SaveCalibration(rig, options.out);
 }
 

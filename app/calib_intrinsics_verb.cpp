@@ -135,8 +135,8 @@ std::string Save(const IntrinsicsOptions& options, const std::vector<Camera>& ca
     for (const Camera& camera : cameras) {
         if (!camera.lens || camera.out.empty()) continue;
         if (camera.lens->verdict == calib::Verdict::kFail && !options.keeps_failed) continue;
-        const std::string problem =
-            calib::SaveLens(*camera.lens, WrittenBy(options.command), camera.out);
+        const std::string problem = calib::SaveLens(
+            *camera.lens, WrittenBy(options.command, calib::IntrinsicsLimits()), camera.out);
         if (!problem.empty()) return problem;
     }
     return options.json.empty() ? ""

@@ -17,8 +17,8 @@ std::string DateText() {
     return text;
 }
 
-std::string WrittenBy(const std::string& command) {
-    return command + ", " + DateText();
+std::string WrittenBy(const std::string& command, const std::string& limits) {
+    return command + ", " + DateText() + (limits.empty() ? "" : "; limits: " + limits);
 }
 
 std::string WriteFigures(nlohmann::json figures, const std::string& command,

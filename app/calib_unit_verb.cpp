@@ -129,7 +129,7 @@ std::string Save(const UnitOptions& options, Material& material) {
         const auto verdict = passed ? calib::Verdict::kPass : calib::Verdict::kFail;
         problem = calib::SaveCalibration(
             calib::WithUnit(material.into, findings.session, findings.solution, verdict,
-                            WrittenBy(options.command)),
+                            WrittenBy(options.command, calib::UnitLimits())),
             options.out);
     }
     return problem;

@@ -65,6 +65,9 @@ std::optional<HitchSolution> SolveHitch(const HitchProblem& problem);
 ///  - corners that are off by more than 1 px (root mean square).
 std::vector<std::string> JudgeHitch(const HitchProblem& problem, const HitchSolution& solution);
 
+/// What it is judged by, for a file.
+std::string HitchLimits();
+
 /// The cameras with the origin of both frames in the hitch point, and the trailer's turned so that
 /// the units are in line at yaw 0.
 RigCalibration WithHitch(const RigCalibration& rig, const HitchSolution& solution);

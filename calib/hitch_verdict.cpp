@@ -82,6 +82,13 @@ void JudgePoint(const HitchSolution& solution, Reasons& reasons) {
 
 }  // namespace
 
+std::string HitchLimits() {
+    return Sentence(
+        "%zu shots, turned by %.0f degrees, rms %.3g px, known to %.3g degrees and %.3g mm",
+        kFewestShots, kLeastSpread_rad / kDegree, kMostRms_px, kMostSigma_rad / kDegree,
+        1000 * kMostSigma_m);
+}
+
 std::vector<std::string> JudgeHitch(const HitchProblem& problem, const HitchSolution& solution) {
     Reasons reasons;
     JudgeShots(solution, reasons);

@@ -80,4 +80,7 @@ std::optional<Intrinsics> MeasureIntrinsics(const LensPictures& pictures);
 /// Whether it may be driven with, and if not, what to do about it.
 void JudgeIntrinsics(Intrinsics& intrinsics);
 
+/// What it is judged by, for a file: "rms 1 px, ...".
+std::string IntrinsicsLimits();
+
 }  // namespace hitchview::calib

@@ -101,6 +101,14 @@ void JudgeUncertainty(Intrinsics& found) {
 
 }  // namespace
 
+std::string IntrinsicsLimits() {
+    return Text(
+        "%d views, tilt %.0f degrees, covered %.0f %%, rms %.3g px, blur %.3g px, lens known "
+        "to %.3g px over half the picture",
+        kFewestViews, kLeastTilt_rad * 180 / std::numbers::pi, 100 * kLeastCovered, kMostRms_px,
+        kMostBlur_px, kMostUncertainty_px);
+}
+
 void JudgeIntrinsics(Intrinsics& found) {
     found.reasons.clear();
     JudgeViews(found);

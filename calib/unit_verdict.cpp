@@ -142,6 +142,11 @@ void JudgeIntervals(const UnitProblem& problem, const UnitSolution& solution, Re
 
 }  // namespace
 
+std::string UnitLimits() {
+    return Sentence("rms %.3g px, survey %.3g mm, known to %.3g degrees and %.3g mm", kMostRms_px,
+                    1000 * kMostSurveyError_m, kMostSigma_rad / kDegree, 1000 * kMostSigma_m);
+}
+
 std::vector<std::string> JudgeUnit(const UnitProblem& problem, const CameraGraph& graph,
                                    const UnitSolution& solution) {
     Reasons reasons;

@@ -20,4 +20,7 @@ namespace hitchview::calib {
 std::vector<std::string> JudgeUnit(const UnitProblem& problem, const CameraGraph& graph,
                                    const UnitSolution& solution);
 
+/// What it is judged by, for a file.
+std::string UnitLimits();
+
 }  // namespace hitchview::calib
