@@ -94,10 +94,15 @@ class BoardViews {
         const double width_m = (board_.columns - 1) * board_.square_m;
         Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
         const Eigen::Vector3d middle = (board_.Corner(0) + board_.Corner(board_.count() - 1)) / 2;
-        const Eigen::Vector3d axis(std::cos(3 * u(random_)), std::sin(3 * u(random_)), 0);
+        // One draw a statement: in which order operands are evaluated differs between processors.
+        const double sine = std::sin(3 * u(random_));
+        const double cosine = std::cos(3 * u(random_));
+        const double roll_rad = 0.2 * u(random_);
+        const double tilt_rad = most_tilt_rad_ * u(random_);
+        const Eigen::Vector3d axis = Eigen::Vector3d(cosine, sine, 0).normalized();
         T.linear() = (Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), *direction) *
-                      Eigen::AngleAxisd(most_tilt_rad_ * u(random_), axis.normalized()) *
-                      Eigen::AngleAxisd(0.2 * u(random_), Eigen::Vector3d::UnitZ()))
+                      Eigen::AngleAxisd(tilt_rad, axis) *
+                      Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitZ()))
                          .toRotationMatrix();
         T.translation() = *direction * width_m * (1.2 + 0.6 * u(random_)) - T.linear() * middle;
         return T;

@@ -71,9 +71,12 @@ class UnitYard {
         for (const int corner :
              {0, 4 * (columns - 1) + 1, 4 * last + 2, 4 * (last - columns + 1) + 3}) {
             const Eigen::Vector3d p = kYardBoard.Corner(corner);
-            target.surveyed.push_back(
-                {p, T_unit_target_[index] * p +
-                        Eigen::Vector3d(error(random_), error(random_), error(random_))});
+            // One draw a statement: in which order arguments are evaluated differs between
+            // processors.
+            const double z = error(random_);
+            const double y = error(random_);
+            const double x = error(random_);
+            target.surveyed.push_back({p, T_unit_target_[index] * p + Eigen::Vector3d(x, y, z)});
         }
     }
 
@@ -106,7 +109,9 @@ class UnitYard {
             if (!at || at->x() < 0 || at->y() < 0 || at->x() > lens.width_px - 1 ||
                 at->y() > lens.height_px - 1)
                 continue;
-            sighting.corners.push_back({i, *at + Eigen::Vector2d(noise(random_), noise(random_))});
+            const double y_px = noise(random_);
+            const double x_px = noise(random_);
+            sighting.corners.push_back({i, *at + Eigen::Vector2d(x_px, y_px)});
         }
         if (!sighting.corners.empty()) problem_.sightings.push_back(std::move(sighting));
     }
