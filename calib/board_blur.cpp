@@ -6,6 +6,8 @@
 #include <map>
 #include <vector>
 
+#include "calib/median.hpp"
+
 namespace hitchview::calib {
 namespace {
 
@@ -114,13 +116,10 @@ std::optional<double> EdgeBlur_px(const cv::Mat& grey, const Vector2d& from, con
     return *steps * kStep_px;
 }
 
-/// Of the values of an odd number of edges; 0 of few.
-double Median(std::vector<double>& values) {
+/// 0 of too few edges.
+double MedianOfEnough(std::vector<double>& blurs_px) {
     constexpr std::size_t kFewest = 4;
-    if (values.size() < kFewest) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
+    return blurs_px.size() < kFewest ? 0 : Median(std::move(blurs_px));
 }
 
 }  // namespace
@@ -138,7 +137,7 @@ std::optional<double> BoardBlur_px(const cv::Mat& grey, const Board& board,
         if (const auto blur = EdgeBlur_px(grey, from->second, to->second, edge.reach))
             blurs_px.at(static_cast<std::size_t>(edge.across)).push_back(*blur);
     }
-    const double blur_px = std::max(Median(blurs_px[0]), Median(blurs_px[1]));
+    const double blur_px = std::max(MedianOfEnough(blurs_px[0]), MedianOfEnough(blurs_px[1]));
     if (blur_px <= 0) return std::nullopt;
     return blur_px;
 }

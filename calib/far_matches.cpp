@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calib/far_consensus.hpp"
+#include "calib/median.hpp"
 
 namespace hitchview::calib {
 namespace {
@@ -242,10 +243,8 @@ std::vector<NeighbourMisalignment> Misalignments(const UnitProblem& problem,
             angles[{match.first, match.second}].push_back(angle_rad);
     }
     std::vector<NeighbourMisalignment> misalignments;
-    for (auto& [pair, of_pair] : angles) {
-        const auto middle = of_pair.begin() + std::ssize(of_pair) / 2;
-        std::ranges::nth_element(of_pair, middle);
-        misalignments.push_back({pair.first, pair.second, of_pair.size(), *middle});
+    for (const auto& [pair, of_pair] : angles) {
+        misalignments.push_back({pair.first, pair.second, of_pair.size(), Median(of_pair)});
     }
     return misalignments;
 }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "calib/hitch_adjustment.hpp"
+#include "calib/median.hpp"
 
 namespace hitchview::calib {
 namespace {
@@ -44,9 +45,7 @@ double MedianError(const HitchProblem& problem, const HitchPlaces& places) {
         }
     }
     if (errors.empty()) return 0;
-    const auto middle = errors.begin() + std::ssize(errors) / 2;
-    std::ranges::nth_element(errors, middle);
-    return *middle;
+    return Median(std::move(errors));
 }
 
 double Rms(const HitchProblem& problem, const HitchPlaces& places, const Kept& kept) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/intrinsics.hpp"
+#include "calib/median.hpp"
 
 namespace hitchview::calib {
 namespace {
@@ -68,13 +69,12 @@ void JudgeSharpness(Intrinsics& found) {
     for (const ViewOutcome& view : found.views)
         if (view.is_used() && view.blur_px) blurs_px.push_back(*view.blur_px);
     if (blurs_px.empty()) return;
-    const auto middle = blurs_px.begin() + static_cast<std::ptrdiff_t>(blurs_px.size() / 2);
-    std::ranges::nth_element(blurs_px, middle);
-    if (*middle <= kMostBlur_px) return;
+    const double usual_px = Median(std::move(blurs_px));
+    if (usual_px <= kMostBlur_px) return;
     found.reasons.push_back(
         Text("the board's edges are smeared over %.1f px (standard deviation), at most %.1f may "
              "be: focus the camera, clean its lens, hold the board still",
-             *middle, kMostBlur_px));
+             usual_px, kMostBlur_px));
 }
 
 void JudgeUncertainty(Intrinsics& found) {

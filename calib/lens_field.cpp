@@ -11,9 +11,8 @@ using algo::CameraModel;
 
 /// Where the picture of a ray stands, in focal lengths from the centre.
 double Radius(const CameraModel& lens, double theta, double azimuth) {
-    const auto at =
-        lens.Project({std::sin(theta) * std::cos(azimuth), std::sin(theta) * std::sin(azimuth),
-                      std::cos(theta)});
+    const auto at = lens.Project({std::sin(theta) * std::cos(azimuth),
+                                  std::sin(theta) * std::sin(azimuth), std::cos(theta)});
     return std::hypot((at->x() - lens.cx_px) / lens.fx_px, (at->y() - lens.cy_px) / lens.fy_px);
 }
 

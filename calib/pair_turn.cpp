@@ -8,6 +8,7 @@
 #include "calib/camera_graph.hpp"
 #include "calib/far_matches.hpp"
 #include "calib/lens_solver.hpp"
+#include "calib/median.hpp"
 #include "calib/reprojection_error.hpp"
 #include "calib/unit_adjustment.hpp"
 
@@ -141,13 +142,10 @@ double PairTurn::OffShare(const Matrix3d& first_turn, const Matrix3d& second_tur
 
 double PairTurn::Misalignment_rad() const {
     const Matrix3d still = Matrix3d::Identity();
-    std::vector<double> angles_rad = Angles(*this, still, still);
-    const auto middle = angles_rad.begin() + std::ssize(angles_rad) / 2;
-    std::ranges::nth_element(angles_rad, middle);
     double shift_rad = 0;
     for (const CommonSight& sight : sights)
         shift_rad += turn_rad.cross(sight.from_second).norm() / static_cast<double>(sights.size());
-    return std::max(*middle, shift_rad);
+    return std::max(Median(Angles(*this, still, still)), shift_rad);
 }
 
 std::optional<PairTurn> MeasurePairTurn(const UnitProblem& problem, std::size_t first,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/median.hpp"
 #include "calib/place_change.hpp"
 #include "calib/unit_start.hpp"
 
@@ -30,9 +31,7 @@ double RobustSigma(const UnitProblem& problem, const CameraGraph& graph, const U
         distances.insert(distances.end(), of_sighting.begin(), of_sighting.end());
     }
     if (distances.empty()) return kFirstSigma_px;
-    const auto middle = distances.begin() + std::ssize(distances) / 2;
-    std::ranges::nth_element(distances, middle);
-    return std::max(kLeastSigma_px, *middle / 1.1774);
+    return std::max(kLeastSigma_px, Median(std::move(distances)) / 1.1774);
 }
 
 KeptCorners Within(double farthest_px, const UnitProblem& problem, const CameraGraph& graph,

@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "calib/median.hpp"
+
 namespace hitchview::calib {
 namespace {
 
@@ -34,9 +36,7 @@ double MostBlur_px(const std::vector<BoardView>& views) {
     for (const BoardView& view : views)
         if (view.blur_px) blurs_px.push_back(*view.blur_px);
     if (blurs_px.empty()) return kHarmless_px;
-    const auto middle = blurs_px.begin() + static_cast<std::ptrdiff_t>(blurs_px.size() / 2);
-    std::ranges::nth_element(blurs_px, middle);
-    return std::max(kHarmless_px, kTimesUsual * *middle);
+    return std::max(kHarmless_px, kTimesUsual * Median(std::move(blurs_px)));
 }
 
 }  // namespace

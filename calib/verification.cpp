@@ -109,8 +109,9 @@ class UnitChecks {
         for (const auto& answer : answers) {
             if (!who.empty()) who += ", or ";
             for (std::size_t i = 0; i < answer.size(); ++i) {
-                who += (i > 0 ? " and " : "") + Name(answer[i].camera) +
-                       Sentence(" moved (turned by some %.1f degrees)", answer[i].turn_rad / kDegree);
+                who +=
+                    (i > 0 ? " and " : "") + Name(answer[i].camera) +
+                    Sentence(" moved (turned by some %.1f degrees)", answer[i].turn_rad / kDegree);
             }
         }
         return who + ": tighten its mount and calibrate the unit again";

@@ -10,17 +10,12 @@
 #include <vector>
 
 #include "calib/board_pattern.hpp"
+#include "calib/median.hpp"
 
 namespace hitchview::calib {
 namespace {
 
 using Eigen::Vector2d;
-
-double Median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-}
 
 struct Patch {
     double dark_grey = 0;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "calib/chessboard_detector.hpp"
+#include "calib/median.hpp"
 
 namespace hitchview::calib {
 namespace {
@@ -19,12 +20,6 @@ SeenCorners Turned(const SeenCorners& corners, const std::vector<int>& turn) {
     std::vector<Eigen::Vector2d> turned;
     for (const int index : turn) turned.push_back(corners[static_cast<std::size_t>(index)].at_px);
     return AllCorners(turned);
-}
-
-double Median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
 }
 
 bool IsSamePicture(const SeenCorners& a, const SeenCorners& b) {
