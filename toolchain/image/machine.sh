@@ -40,11 +40,12 @@ new_machine() {
     machine_disk=$machine_work/disk.img
     machine_kernel=$(toolchain/vm/kernel)
     cp --sparse=always --reflink=auto "$1" "$machine_disk"
-    ip link show hvtap0 >/dev/null 2>&1 || {
+    ip link show machine0 >/dev/null 2>&1 || {
         ip link set lo up
-        ip tuntap add hvtap0 mode tap
-        ip address add 10.77.0.1/24 dev hvtap0
-        ip link set hvtap0 up
+        ip link add machine0 type veth peer name machine1
+        ip address add 10.77.0.1/24 dev machine0
+        ip link set machine0 up
+        ip link set machine1 up
     }
 }
 
@@ -54,7 +55,7 @@ start_machine() {
     chrt --rr 1 true 2>/dev/null && paced=(chrt --rr 1)
     machine_started=$(date +%s.%N)
     "${paced[@]}" "$machine_kernel/linux" mem="${machine_memory:-1536M}" ncpus=2 seccomp=on ubd0="$machine_disk" root=/dev/ubda2 rw \
-        vec0:transport=tap,ifname=hvtap0 quiet panic=-1 con=null con0=null,fd:1 ssl=null uml_dir="$machine_work/umid" \
+        vec0:transport=raw,ifname=machine1 quiet panic=-1 con=null con0=null,fd:1 ssl=null uml_dir="$machine_work/umid" \
         umid="machine$$" </dev/null >>"$machine_work/console" 2>&1 &
     machine_process=$!
 }
