@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "app/camera_ahead.hpp"
@@ -20,6 +21,7 @@
 #include "drivers/simulated_scenario.hpp"
 #include "drivers/socketcan_bus.hpp"
 #include "drivers/steady_clock.hpp"
+#include "drivers/systemd_notify.hpp"
 #include "drivers/v4l2_camera.hpp"
 
 namespace hitchview::app {
@@ -277,6 +279,10 @@ hal::Checked<std::unique_ptr<hal::Publisher>> Board::OpenPublisher(const Publish
         {.url = config.url, .messages = EncoderOptionsOf(config)}, *clock_);
     if (!publisher) return publisher.error();
     return std::unique_ptr<hal::Publisher>(std::move(*publisher));
+}
+
+hal::Checked<std::unique_ptr<hal::Watchdog>> Board::OpenWatchdog() {
+    return drivers::SystemdNotify::Open(std::getenv("NOTIFY_SOCKET"));
 }
 
 std::optional<int> Board::ReceiveBufferBytes() {

@@ -13,6 +13,7 @@
 #include "hal/can_bus.hpp"
 #include "hal/clock.hpp"
 #include "hal/publisher.hpp"
+#include "hal/watchdog.hpp"
 
 namespace hitchview::drivers {
 class LcmLogCanBus;
@@ -61,6 +62,8 @@ class Board {
     [[nodiscard]] const std::vector<FrameTap*>& taps() const { return taps_; }
 
     hal::Checked<std::unique_ptr<hal::Publisher>> OpenPublisher(const PublishConfig& config);
+    /// Of the service manager that started this program; null: none did.
+    static hal::Checked<std::unique_ptr<hal::Watchdog>> OpenWatchdog();
     /// What this system grants a subscriber that asks for a large receive buffer; empty: not known.
     [[nodiscard]] static std::optional<int> ReceiveBufferBytes();
 
