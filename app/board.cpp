@@ -21,6 +21,7 @@
 #include "drivers/simulated_scenario.hpp"
 #include "drivers/socketcan_bus.hpp"
 #include "drivers/steady_clock.hpp"
+#include "drivers/systemd_journal.hpp"
 #include "drivers/systemd_notify.hpp"
 #include "drivers/v4l2_camera.hpp"
 
@@ -181,7 +182,10 @@ int SimulatedIndex(const drivers::SimulatedRig& rig, algo::Unit unit, const std:
 }  // namespace
 
 Board::Board(const Options& options)
-    : options_(options), clock_(std::make_unique<drivers::SteadyClock>()) {}
+    : options_(options),
+      clock_(std::make_unique<drivers::SteadyClock>()),
+      event_log_(drivers::SystemdJournal::Open(std::getenv("JOURNAL_STREAM"))),
+      events_(event_log_.get()) {}
 Board::~Board() = default;
 
 hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, const Options& options) {

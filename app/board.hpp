@@ -97,6 +97,7 @@ class Board {
     drivers::LcmLogCanBus* log_can_bus_ = nullptr;  ///< the same, of a recording
     bool is_can_live_ = false;
     hal::Instant period_{};
+    std::unique_ptr<hal::EventLog> event_log_;
     EventQueue events_;
     std::unique_ptr<FrameSynchronizer> sets_;  // last: it uses cameras, events and clock
     LiveFrameSynchronizer* live_ = nullptr;

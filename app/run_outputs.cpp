@@ -226,7 +226,7 @@ hal::Checked<hal::Done> RunOutputs::StartPublishing(const RigConfig& config,
     if (!side) return side.error();
     if (const auto opened = OpenWatchdog(options); !opened) return opened;
     const ReceiveBufferVerdict buffer = ReceiveBuffer(config.publish, options.publish);
-    if (!buffer.warning.view().empty())
+    if (!buffer.warning.view().empty() && !board.events().is_on_stderr())
         std::fprintf(stderr, "publish: %s\n", buffer.warning.c_str());
     const bool seams = run.cameras[algo::Unit::kTrailer] > 0;
     watch_ = std::make_unique<RunWatch>(

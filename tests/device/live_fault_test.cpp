@@ -3,10 +3,14 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <optional>
 
+#include "drivers/systemd_journal.hpp"
 #include "tests/device/live_program.hpp"
 #include "tests/device/live_report.hpp"
+#include "tests/support/datagram_listener.hpp"
 
 // The program on eight virtual cameras, one of which fails while it runs.
 namespace hitchview::app {
@@ -218,6 +222,24 @@ TEST_F(LiveFaultTest, ACameraThatAnotherProgramHasAtTheStartIsTakenInWhenItIsFre
     Finish("busy at the start");
     ExpectAbsence(there_at);
     ExpectEvents("in use by another program");
+}
+
+TEST_F(LiveFaultTest, WhatBefallsACameraStandsInTheJournalToo) {
+    std::filesystem::create_directories("/run/systemd/journal");
+    tests::DatagramListener journal(drivers::SystemdJournal::kSocket);
+    setenv("JOURNAL_STREAM", "8:1", 1);
+    ASSERT_NO_FATAL_FAILURE(Start());
+    unsetenv("JOURNAL_STREAM");
+    Set("inject_fatal_streaming_error", 1);
+    Finish("written to the journal");
+    ExpectEvents("I/O error");
+    std::vector<std::string> entries;
+    for (const std::string& entry : journal.TakeAll())
+        if (entry.find("\nCAMERA=") != std::string::npos) entries.push_back(entry);
+    ASSERT_EQ(entries.size(), 2U);
+    const std::string message = std::string("MESSAGE=camera ") + kFaultyName + ": ";
+    EXPECT_TRUE(entries[0].starts_with(message + "lost: I/O error\n")) << entries[0];
+    EXPECT_TRUE(entries[1].starts_with(message + "back after ")) << entries[1];
 }
 
 TEST_F(LiveFaultTest, ACameraThatFailsAndDoesNotStreamAtOnceIsTriedAgain) {
