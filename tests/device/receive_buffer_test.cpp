@@ -144,7 +144,7 @@ TEST_F(ReceiveBufferTest, WhereItIsSmallThePicturesAreMadeToFitAndTheReasonIsTol
 }
 
 TEST_F(ReceiveBufferTest, WithTheShippedSettingTheyAreSentAsLargeAsTheyAre) {
-    Run("-p " HITCHVIEW_SOURCE_DIR "/systemd/90-hitchview.conf");
+    Run("-p " HITCHVIEW_SOURCE_DIR "/systemd/sysctl/90-hitchview.conf");
     EXPECT_EQ(listener_->images, Sent());
     EXPECT_EQ(listener_->budget_bytes, 4'000'000);
     EXPECT_GT(listener_->largest_bytes, 250'000);
