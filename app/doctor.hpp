@@ -63,13 +63,20 @@ struct DoctorRig {
 struct DoctorSubject {
     DoctorMachine machine{};
     DoctorRig rig{};
-    SystemdUnit service{};  ///< hitchview.service
+    SystemdUnit service{};   ///< hitchview.service
+    SystemdUnit recorder{};  ///< hitchview-record.service, which may run in its place
 
-    /// Who opens the devices and files: the service's user, or who asks where there is none.
+    [[nodiscard]] bool MakesPanoramas() const { return service.IsActive() || recorder.IsActive(); }
+    /// Who opens the devices and files: the service's user; empty: there is none, it is who asks.
     [[nodiscard]] std::string user() const;
+    /// "user hitchview", "this user".
+    [[nodiscard]] std::string who() const;
     [[nodiscard]] std::optional<UserIds> user_ids() const;
 };
 using DoctorCase = std::shared_ptr<const DoctorSubject>;
+
+/// Reads what the checks share. `rig`: file; empty: the installed one, where there is one.
+DoctorCase ExamineMachine(DoctorMachine machine, const std::filesystem::path& rig);
 
 /// Where the service's rig file is.
 inline constexpr const char* kInstalledRig = "/etc/hitchview/rig.yaml";

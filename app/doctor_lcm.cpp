@@ -60,7 +60,8 @@ Diagnosis CheckLoopback(const DoctorSubject& subject) {
     if ((*flags & IFF_MULTICAST) != 0) return {Finding::kGood, "lo is up and carries multicast"};
     const auto source = subject.machine.multicast_source();
     if (!source)
-        return {.what = "lo carries no multicast; judged after lcm_multicast_route, whether it must"};
+        return {.what =
+                    "lo carries no multicast; judged after lcm_multicast_route, whether it must"};
     // A route to lo needs no address.
     if (source.value() != kNoAddress && !source.value().starts_with("127."))
         return {Finding::kGood, "lo carries no multicast, which goes by another interface"};

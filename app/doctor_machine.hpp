@@ -27,7 +27,8 @@ struct CanLinkFacts {
 
     bool is_can = false;
     bool is_up = false;
-    bool has_bit_rate = false;  ///< of its own: not a virtual one, nor one whose driver does not tell
+    bool has_bit_rate =
+        false;  ///< of its own: not a virtual one, nor one whose driver does not tell
     std::uint32_t bit_rate = 0;  ///< 0: not set
     State state = State::kUntold;
     std::uint32_t restart_ms = 0;

@@ -42,6 +42,16 @@ std::vector<std::string> Words(const std::string& text) {
     return words;
 }
 
+std::vector<std::string> Writable(std::map<std::string, std::string>& properties) {
+    std::vector<std::string> folders = Words(properties["ReadWritePaths"]);
+    // Marks of paths that may be missing, or stand below the unit's root.
+    for (std::string& folder : folders) folder.erase(0, folder.find('/'));
+    std::erase(folders, "");
+    for (const std::string& state : Words(properties["StateDirectory"]))
+        folders.push_back("/var/lib/" + state);
+    return folders;
+}
+
 }  // namespace
 
 SystemdUnit ReadUnit(const DoctorMachine& machine, const std::string& unit) {
@@ -49,7 +59,8 @@ SystemdUnit ReadUnit(const DoctorMachine& machine, const std::string& unit) {
     const auto text = machine.output(
         {kSystemctl, "show", unit,
          "--property=LoadState,UnitFileState,ActiveState,SubState,Result,NRestarts,User,"
-         "SupplementaryGroups,AmbientCapabilities,LimitRTPRIO,LimitMEMLOCK"});
+         "SupplementaryGroups,AmbientCapabilities,LimitRTPRIO,LimitMEMLOCK,"
+         "MemoryMax,ProtectSystem,StateDirectory,ReadWritePaths"});
     if (!text) return {};
     auto properties = Properties(*text);
     return {.is_told = properties.contains("LoadState"),
@@ -63,7 +74,10 @@ SystemdUnit ReadUnit(const DoctorMachine& machine, const std::string& unit) {
             .supplementary_groups = Words(properties["SupplementaryGroups"]),
             .capabilities = properties["AmbientCapabilities"],
             .priority_limit = Number(properties["LimitRTPRIO"]),
-            .locked_limit_bytes = Number(properties["LimitMEMLOCK"])};
+            .locked_limit_bytes = Number(properties["LimitMEMLOCK"]),
+            .memory_limit_bytes = Number(properties["MemoryMax"]),
+            .is_confined = properties["ProtectSystem"] == "strict",
+            .writable = Writable(properties)};
 }
 
 std::optional<std::vector<std::string>> FailedUnits(const DoctorMachine& machine,

@@ -11,7 +11,7 @@ namespace hitchview::app {
 
 /// What systemd says of a unit.
 struct SystemdUnit {
-    bool is_told = false;  ///< systemd runs and answered; otherwise nothing below is known
+    bool is_told = false;           ///< systemd runs and answered; otherwise nothing below is known
     std::string load_state{};       ///< loaded, not-found, masked, bad-setting, error
     std::string unit_file_state{};  ///< enabled, disabled, static, masked
     std::string active_state{};     ///< active, inactive, failed, activating, deactivating
@@ -20,9 +20,12 @@ struct SystemdUnit {
     std::uint64_t restarts = 0;
     std::string user{};  ///< empty: root
     std::vector<std::string> supplementary_groups{};
-    std::string capabilities{};                       ///< that it has beyond its user's
-    std::optional<std::uint64_t> priority_limit{};    ///< empty: none
+    std::string capabilities{};                         ///< that it has beyond its user's
+    std::optional<std::uint64_t> priority_limit{};      ///< empty: none
     std::optional<std::uint64_t> locked_limit_bytes{};  ///< empty: none
+    std::optional<std::uint64_t> memory_limit_bytes{};  ///< empty: none
+    bool is_confined = false;                           ///< it may write only to `writable`
+    std::vector<std::string> writable{};                ///< folders
 
     [[nodiscard]] bool IsLoaded() const { return is_told && load_state == "loaded"; }
     [[nodiscard]] bool IsActive() const { return IsLoaded() && active_state == "active"; }

@@ -19,9 +19,9 @@ int RunProgram(const std::filesystem::path& program, const std::vector<std::stri
 /// not be started: 3.
 int BecomeProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments);
 
-/// What a program wrote to its standard output, at most 64 KiB, if it ended by itself with exit code
-/// 0 within `limit`; otherwise empty, and whatever of it still runs is killed. It reads nothing, and
-/// what it complains of is dropped.
+/// What a program wrote to its standard output, at most 64 KiB, if it ended by itself with exit
+/// code 0 within `limit`; otherwise empty, and whatever of it still runs is killed. It reads
+/// nothing, and what it complains of is dropped.
 std::optional<std::string> OutputOf(const std::filesystem::path& program,
                                     const std::vector<std::string>& arguments,
                                     std::chrono::milliseconds limit);

@@ -16,10 +16,10 @@ struct CanLink {
 
     bool is_can = false;
     bool is_up = false;
-    std::string kind{};             ///< can, vcan, vxcan; empty: the driver does not tell
-    std::uint32_t bit_rate = 0;     ///< per second; 0: not set, or not told
-    std::optional<State> state{};   ///< of its controller; empty: not told
-    std::uint32_t restart_ms = 0;   ///< after bus-off; 0: it stays off
+    std::string kind{};            ///< can, vcan, vxcan; empty: the driver does not tell
+    std::uint32_t bit_rate = 0;    ///< per second; 0: not set, or not told
+    std::optional<State> state{};  ///< of its controller; empty: not told
+    std::uint32_t restart_ms = 0;  ///< after bus-off; 0: it stays off
 };
 
 /// Asks the kernel by netlink and changes nothing. Waits at most half a second. Error: there is no
