@@ -47,13 +47,14 @@ Diagnosis JudgeState(const std::string& name, const CanLinkFacts& link) {
         case State::kErrors:
             return {Finding::kGood, name + " is on the bus, which has many errors"};
         case State::kBusOff:
+            return {Finding::kBad, name + " is bus-off" + restart,
+                    "look at wiring, terminators and bit rate; then: ip link set " + name +
+                        " type can restart"};
         case State::kOffBus:
             break;
     }
-    return {Finding::kBad,
-            name + (link.state == State::kBusOff ? " is bus-off" + restart : " is stopped"),
-            "look at wiring, terminators and bit rate; then: ip link set " + name +
-                " type can restart"};
+    if (link.is_up) return {.what = name + " is up, and its controller says it is stopped"};
+    return {Finding::kBad, name + " is stopped", "ip link set " + name + " up"};
 }
 
 /// Of the rig's interface, where there is one.

@@ -11,6 +11,7 @@ Diagnosis CheckStream(const DoctorSubject& subject) {
         return {.what = std::string("the service runs ") + kInstalledRig + ", not this rig file"};
     if (!drivers::IsMulticastUrl(publish.url))
         return {.what = publish.url + " is no multicast network"};
+    if (!subject.machine.multicast_source()) return {.what = "after lcm_multicast_route"};
     const auto heard = subject.machine.hear(publish.url, publish.panorama_channel);
     const std::string where = publish.panorama_channel + " at " + publish.url;
     const std::string restart =

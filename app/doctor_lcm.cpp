@@ -1,8 +1,10 @@
 #include <net/if.h>
 
 #include <cstring>
+#include <sstream>
 
 #include "app/doctor.hpp"
+#include "app/doctor_route.hpp"
 #include "app/receive_buffer.hpp"
 #include "drivers/lcm_url.hpp"
 
@@ -16,6 +18,11 @@ constexpr double kUsualBufferBytes = 212'992;
 /// What LCM's group is sent from where a route names no address.
 constexpr const char* kNoAddress = "0.0.0.0";
 
+/// Of a receive buffer: the largest panorama that it holds with what the kernel keeps beside it.
+int FittingBytes(int buffer_bytes) {
+    return static_cast<int>(kUsualBufferImageBytes * (buffer_bytes / kUsualBufferBytes));
+}
+
 Diagnosis CheckLargestBuffer(const DoctorSubject& subject) {
     const auto buffers = subject.machine.socket_buffers();
     if (!buffers) return {.what = "no socket can be opened"};
@@ -23,16 +30,17 @@ Diagnosis CheckLargestBuffer(const DoctorSubject& subject) {
     const std::string what = "net.core.rmem_max is " + std::to_string(buffers->largest_bytes) +
                              ", panoramas have up to " + std::to_string(publish.max_bytes) +
                              " bytes";
+    const bool is_shrunk = buffers->largest_bytes < kUsualBufferBytes &&
+                           publish.max_bytes > FittingBytes(buffers->largest_bytes);
     const auto verdict = JudgeReceiveBuffer(publish.max_bytes, buffers->largest_bytes, false);
-    if (verdict.warning.view().empty()) return {Finding::kGood, what};
+    if (verdict.warning.view().empty() && !is_shrunk) return {Finding::kGood, what};
     return {Finding::kBad, what, kInstallSysctl};
 }
 
 Diagnosis CheckUsualBuffer(const DoctorSubject& subject) {
     const auto buffers = subject.machine.socket_buffers();
     if (!buffers) return {.what = "no socket can be opened"};
-    const int fits_bytes =
-        static_cast<int>(kUsualBufferImageBytes * (buffers->usual_bytes / kUsualBufferBytes));
+    const int fits_bytes = FittingBytes(buffers->usual_bytes);
     const std::string what = "net.core.rmem_default is " + std::to_string(buffers->usual_bytes) +
                              ": programs with a plain LCM URL receive up to " +
                              std::to_string(fits_bytes) + " bytes";
@@ -41,8 +49,25 @@ Diagnosis CheckUsualBuffer(const DoctorSubject& subject) {
             std::string(kInstallSysctl) + ", or append &recv_buf_size=16777216 to their URLs"};
 }
 
+/// The interface that /etc/hitchview/network names; empty: none, or there is no such file.
+std::string WantedInterface(const DoctorMachine& machine) {
+    constexpr std::string_view kKey = "interface=";
+    std::istringstream lines(ReadText(machine.At("/etc/hitchview/network")).value_or(""));
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with(kKey)) return line.substr(kKey.size());
+    }
+    return "";
+}
+
 Diagnosis CheckRoute(const DoctorSubject& subject) {
     const auto source = subject.machine.multicast_source();
+    const std::string wanted = WantedInterface(subject.machine);
+    const std::string taken = MulticastInterface(subject.machine);
+    if (source && !wanted.empty() && !taken.empty() && wanted != taken) {
+        return {Finding::kBad,
+                "224.0.0.0/4 is routed to " + taken + ", /etc/hitchview/network says " + wanted,
+                "systemctl restart hitchview-lcm-route"};
+    }
     if (source) {
         const std::string from = source.value() == kNoAddress ? "lo" : source.value();
         return {Finding::kGood, "224.0.0.0/4 is routed, from " + from};
@@ -50,7 +75,8 @@ Diagnosis CheckRoute(const DoctorSubject& subject) {
     return {Finding::kBad,
             std::string("224.0.0.0/4 is not routed: ") + std::strerror(source.error()),
             "for this machine alone: ip route add 224.0.0.0/4 dev lo; for display units: the same "
-            "with the vehicle network's device; installed: systemctl restart hitchview-lcm-route"};
+            "with the vehicle network's device; as /etc/hitchview/network says: systemctl restart "
+            "hitchview-lcm-route"};
 }
 
 Diagnosis CheckLoopback(const DoctorSubject& subject) {
@@ -72,6 +98,9 @@ Diagnosis CheckDelivery(const DoctorSubject& subject) {
     const PublishConfig& publish = subject.rig.config.publish;
     if (!drivers::IsMulticastUrl(publish.url))
         return {.what = publish.url + " is no multicast network"};
+    // LCM has much to say about it.
+    if (!subject.machine.multicast_source())
+        return {Finding::kBad, "nothing can be sent", "ip route add 224.0.0.0/4 dev lo"};
     const auto sent = subject.machine.send_to_self(publish.url, publish.max_bytes);
     const std::string what = std::to_string(publish.max_bytes) + " bytes over " + publish.url;
     if (sent) return {Finding::kGood, what + " came back"};

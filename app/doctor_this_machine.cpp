@@ -17,7 +17,6 @@
 #include "app/camera_probe.hpp"
 #include "app/doctor_machine.hpp"
 #include "app/program.hpp"
-#include "app/real_time.hpp"
 #include "app/thread_schedule.hpp"
 #include "drivers/lcm_listener.hpp"
 #include "drivers/lcm_receive_buffer.hpp"
@@ -164,10 +163,13 @@ hal::Checked<hal::Done> TakePriority(int priority) {
     return applied;
 }
 
+/// With the limits of a run, and without making anything resident.
 hal::Checked<hal::Done> TryLockMemory() {
-    const auto locked = LockAllMemory();
+    const bool locked = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
+    const int refusal = errno;
     munlockall();
-    return locked;
+    if (locked) return hal::Done{};
+    return std::string(std::strerror(refusal));
 }
 
 }  // namespace

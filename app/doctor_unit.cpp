@@ -90,7 +90,8 @@ std::optional<std::vector<std::string>> FailedUnits(const DoctorMachine& machine
     std::istringstream lines(*text);
     for (std::string line; std::getline(lines, line);) {
         const auto words = Words(line);
-        if (!words.empty() && words.front() != other_than) units.push_back(words.front());
+        const std::string unit = words.empty() ? "" : words.front();
+        if (unit.starts_with("hitchview") && unit != other_than) units.push_back(unit);
     }
     return units;
 }

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <net/if.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <iomanip>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -54,6 +57,15 @@ class HealthyMachine {
         const std::size_t place = text.find(old);
         ASSERT_NE(place, std::string::npos) << old;
         Write(path, text.replace(place, old.size(), text_now));
+    }
+
+    /// A line of /proc/net/route.
+    static std::string RouteLine(const char* interface, const char* to, const char* mask) {
+        std::ostringstream line;
+        line << std::hex << std::uppercase << std::setfill('0') << interface << '\t' << std::setw(8)
+             << inet_addr(to) << "\t00000000\t0001\t0\t0\t100\t" << std::setw(8) << inet_addr(mask)
+             << "\t0\t0\t0\n";
+        return line.str();
     }
 
     [[nodiscard]] app::DoctorMachine Machine() {
@@ -174,6 +186,11 @@ class HealthyMachine {
             Write(folder + "/scaling_min_freq", "2201600\n");
             Write(folder + "/scaling_max_freq", "2201600\n");
         }
+        Write("etc/hitchview/network", "# as shipped\ninterface=lo\n");
+        Write("proc/net/route",
+              "Iface\tDestination\tGateway \tFlags\tRefCnt\tUse\tMetric\tMask\t\tMTU\n" +
+                  RouteLine("eth0", "0.0.0.0", "0.0.0.0") +
+                  RouteLine("lo", "224.0.0.0", "240.0.0.0"));
         Write("etc/nv_tegra_release", "# R36 (release), REVISION: 4.0\n");
     }
     void WriteSlots() const {

@@ -152,11 +152,32 @@ TEST_F(DoctorMachineTest, ReceiveBuffersThatLargePanoramasDoNotFit) {
     ExpectBad("lcm_usual_receive_buffer", "rmem_default is 212992", "90-hitchview.conf");
 }
 
+TEST_F(DoctorMachineTest, ReceiveBuffersBelowTheKernelsOwn) {
+    machine_.buffers.largest_bytes = 65'536;
+    ExpectBad("lcm_receive_buffer", "rmem_max is 65536", "90-hitchview.conf");
+}
+
 TEST_F(DoctorMachineTest, NoRouteForMulticast) {
     machine_.multicast_source = ENETUNREACH;
     ExpectBad("lcm_multicast_route", "not routed", "ip route add 224.0.0.0/4");
     machine_.loopback_flags = IFF_UP;
     ExpectBad("lcm_multicast_route", "not routed", "ip route add 224.0.0.0/4");
+}
+
+TEST_F(DoctorMachineTest, MulticastThatGoesByAnotherInterfaceThanIsConfigured) {
+    machine_.Write("proc/net/route", machine_.RouteLine("eth0", "0.0.0.0", "0.0.0.0"));
+    machine_.multicast_source = std::string("192.0.2.7");
+    ExpectBad("lcm_multicast_route", "routed to eth0, /etc/hitchview/network says lo",
+              "systemctl restart hitchview-lcm-route");
+    machine_.Write("etc/hitchview/network", "interface=eth0\n");
+    EXPECT_THAT(machine_.Names(Finding::kBad), IsEmpty());
+}
+
+TEST_F(DoctorMachineTest, ARouteOfLcmsGroupAloneComesBeforeThatOfAllMulticast) {
+    machine_.Write("proc/net/route",
+                   machine_.RouteLine("eth1", "239.255.76.67", "255.255.255.255") +
+                       machine_.RouteLine("lo", "224.0.0.0", "240.0.0.0"));
+    ExpectBad("lcm_multicast_route", "routed to eth1", "hitchview-lcm-route");
 }
 
 TEST_F(DoctorMachineTest, LoopbackThatIsDown) {
