@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "app/camera_ahead.hpp"
@@ -20,6 +21,8 @@
 #include "drivers/simulated_scenario.hpp"
 #include "drivers/socketcan_bus.hpp"
 #include "drivers/steady_clock.hpp"
+#include "drivers/systemd_journal.hpp"
+#include "drivers/systemd_notify.hpp"
 #include "drivers/v4l2_camera.hpp"
 
 namespace hitchview::app {
@@ -80,17 +83,91 @@ int BuffersOf(const LiveCameraConfig& live, int slots, int taps) {
     return live.buffers > 0 ? std::min(live.buffers + taps, kMost) : slots + kWithTheDevice;
 }
 
-hal::Checked<std::unique_ptr<hal::Camera>> OpenLive(const CameraConfig& camera, double rate_hz,
-                                                    int slots, int taps) {
-    const int buffers = BuffersOf(camera.live, slots, taps);
-    if (camera.source == CameraConfig::Source::kLibcamera) {
-        return drivers::OpenLibcamera(
-            LibcameraOptionsOf(camera.name, camera.live, rate_hz, buffers));
+/// The live cameras of a rig while they are opened.
+class LiveOpening {
+ public:
+    struct Opened {
+        std::unique_ptr<hal::Camera> camera;  ///< null: it is not there
+        const drivers::V4l2Camera* v4l2 = nullptr;
+        drivers::V4l2CameraOptions options{};
+        drivers::V4l2Refusal refusal{};  ///< why it is not there
+    };
+
+    LiveOpening(double rate_hz, int slots, int taps)
+        : rate_hz_(rate_hz), slots_(slots), taps_(taps) {}
+
+    /// The error: it never will be there.
+    hal::Checked<hal::Done> Add(const CameraConfig& camera) {
+        const int buffers = BuffersOf(camera.live, slots_, taps_);
+        Opened& place = opened_.emplace_back();
+        if (camera.source == CameraConfig::Source::kLibcamera) {
+            auto opened = drivers::OpenLibcamera(
+                LibcameraOptionsOf(camera.name, camera.live, rate_hz_, buffers));
+            if (!opened) return opened.error();
+            place.camera = std::move(*opened);
+            return hal::Done{};
+        }
+        place.options = V4l2OptionsOf(camera.name, camera.live, rate_hz_, buffers);
+        auto opened = drivers::V4l2Camera::TryOpen(place.options);
+        if (!opened) place.refusal = opened.error();
+        if (!opened && place.refusal.is_wish_wrong) return place.refusal.words;
+        if (!opened) return hal::Done{};
+        place.v4l2 = opened->get();
+        place.camera = std::move(*opened);
+        return hal::Done{};
     }
-    auto opened =
-        drivers::V4l2Camera::Open(V4l2OptionsOf(camera.name, camera.live, rate_hz, buffers));
-    if (!opened) return opened.error();
-    return std::unique_ptr<hal::Camera>(std::move(*opened));
+
+    /// Places of those that are not there.
+    [[nodiscard]] std::vector<std::size_t> Absent() const {
+        std::vector<std::size_t> absent;
+        for (std::size_t i = 0; i < opened_.size(); ++i)
+            if (!opened_[i].camera) absent.push_back(i);
+        return absent;
+    }
+    [[nodiscard]] const std::string& WhyAbsent(std::size_t i) const {
+        return opened_[i].refusal.words;
+    }
+    /// Has those that are not there awaited by what the others are like.
+    void AwaitAbsent() {
+        std::vector<const drivers::V4l2Camera*> there;
+        for (const Opened& opened : opened_)
+            if (opened.v4l2 != nullptr) there.push_back(opened.v4l2);
+        for (const std::size_t i : Absent()) {
+            Opened& absent = opened_[i];
+            absent.camera =
+                drivers::V4l2Camera::Await(absent.options, absent.refusal.failure, there);
+        }
+    }
+    [[nodiscard]] std::unique_ptr<hal::Camera> Take(std::size_t i) {
+        return std::move(opened_[i].camera);
+    }
+
+ private:
+    double rate_hz_;
+    int slots_;
+    int taps_;
+    std::vector<Opened> opened_;
+};
+
+/// A camera of a rig and where it is.
+struct PlacedCamera {
+    const CameraConfig* config;
+    algo::Unit unit;
+    std::size_t index_in_unit;
+};
+
+std::vector<PlacedCamera> CamerasOf(const RigConfig& config) {
+    std::vector<PlacedCamera> cameras;
+    for (const algo::Unit unit : algo::kUnits) {
+        for (std::size_t i = 0; i < config.units[unit].cameras.size(); ++i)
+            cameras.push_back({&config.units[unit].cameras[i], unit, i});
+    }
+    return cameras;
+}
+
+std::string CameraError(const RigConfig& config, const CameraConfig& camera,
+                        const std::string& why) {
+    return config.file.string() + ": camera " + camera.name + ": " + why;
 }
 
 /// Index in the simulated rig; -1 for a name it does not have on that unit.
@@ -105,7 +182,10 @@ int SimulatedIndex(const drivers::SimulatedRig& rig, algo::Unit unit, const std:
 }  // namespace
 
 Board::Board(const Options& options)
-    : options_(options), clock_(std::make_unique<drivers::SteadyClock>()) {}
+    : options_(options),
+      clock_(std::make_unique<drivers::SteadyClock>()),
+      event_log_(drivers::SystemdJournal::Open(std::getenv("JOURNAL_STREAM"))),
+      events_(event_log_.get()) {}
 Board::~Board() = default;
 
 hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, const Options& options) {
@@ -113,9 +193,12 @@ hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, const 
     const int slots = options.held_frames + kFramesAhead + (options.recorded ? FrameTap::kHeld : 0);
     if (config.period) board->period_ = *config.period;
     if (const auto simulated = board->OpenSimulation(config); !simulated) return simulated.error();
-    for (const algo::Unit unit : algo::kUnits) {
-        for (const CameraConfig& camera : config.units[unit].cameras) {
-            const auto opened = board->OpenCamera(config, unit, camera, slots);
+    if (config.IsLive()) {
+        const auto opened = board->OpenLiveCameras(config, slots);
+        if (!opened) return opened.error();
+    } else {
+        for (const PlacedCamera& camera : CamerasOf(config)) {
+            const auto opened = board->OpenCamera(config, camera.unit, *camera.config, slots);
             if (!opened) return opened.error();
         }
     }
@@ -150,7 +233,6 @@ hal::Checked<hal::Done> Board::OpenSimulation(const RigConfig& config) {
 
 hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit unit,
                                           const CameraConfig& camera, int slots) {
-    if (camera.IsLive()) return OpenLiveCamera(config, unit, camera, slots);
     if (camera.source == CameraConfig::Source::kLog) {
         OpenLogCamera(config, unit, camera, slots);
         return hal::Done{};
@@ -188,14 +270,28 @@ hal::Camera& Board::Add(algo::Unit unit, std::unique_ptr<hal::Camera> camera) {
     return *cameras_[unit].emplace_back(std::move(camera));
 }
 
-hal::Checked<hal::Done> Board::OpenLiveCamera(const RigConfig& config, algo::Unit unit,
-                                              const CameraConfig& camera, int slots) {
+hal::Checked<hal::Done> Board::OpenLiveCameras(const RigConfig& config, int slots) {
     if (period_.count() == 0) period_ = kDefaultPeriod;
     const int taps = options_.recorded ? FrameTap::kHeld : 0;
-    auto opened = OpenLive(camera, 1e9 / static_cast<double>(period_.count()), slots, taps);
-    if (!opened) return config.file.string() + ": camera " + camera.name + ": " + opened.error();
-    const std::size_t index = cameras_[unit].size();
-    live_cameras_.push_back({&Add(unit, std::move(*opened)), camera.name, unit, index});
+    LiveOpening opening(1e9 / static_cast<double>(period_.count()), slots, taps);
+    const std::vector<PlacedCamera> cameras = CamerasOf(config);
+    for (const PlacedCamera& camera : cameras) {
+        const auto added = opening.Add(*camera.config);
+        if (!added) return CameraError(config, *camera.config, added.error());
+    }
+    const std::vector<std::size_t> absent = opening.Absent();
+    const bool starts = options_.awaits_cameras && absent.size() < cameras.size();
+    for (const std::size_t i : absent) {
+        const std::string why = CameraError(config, *cameras[i].config, opening.WhyAbsent(i));
+        if (!starts) return why;
+        std::fprintf(stderr, "%s; it is awaited\n", why.c_str());
+        cameras_awaited_ |= 1U << i;
+    }
+    opening.AwaitAbsent();
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        const auto& [camera, unit, index] = cameras[i];
+        live_cameras_.push_back({&Add(unit, opening.Take(i)), camera->name, unit, index});
+    }
     return hal::Done{};
 }
 
@@ -277,6 +373,10 @@ hal::Checked<std::unique_ptr<hal::Publisher>> Board::OpenPublisher(const Publish
         {.url = config.url, .messages = EncoderOptionsOf(config)}, *clock_);
     if (!publisher) return publisher.error();
     return std::unique_ptr<hal::Publisher>(std::move(*publisher));
+}
+
+hal::Checked<std::unique_ptr<hal::Watchdog>> Board::OpenWatchdog() {
+    return drivers::SystemdNotify::Open(std::getenv("NOTIFY_SOCKET"));
 }
 
 std::optional<int> Board::ReceiveBufferBytes() {

@@ -13,6 +13,7 @@
 #include "hal/can_bus.hpp"
 #include "hal/clock.hpp"
 #include "hal/publisher.hpp"
+#include "hal/watchdog.hpp"
 
 namespace hitchview::drivers {
 class LcmLogCanBus;
@@ -31,6 +32,9 @@ class Board {
     struct Options {
         int held_frames = 2;    ///< frame sets that the program keeps lent
         bool recorded = false;  ///< cameras have taps, and a live CAN bus delivers all its frames
+        /// Live cameras (V4L2) that cannot be opened are lost from the start, and had when they
+        /// come, if any other can be; false: they are an error.
+        bool awaits_cameras = false;
         /// What somebody holds before each simulated camera; null: nothing. Borrowed by Open.
         const drivers::SheetOptions* held_sheet = nullptr;
     };
@@ -57,10 +61,14 @@ class Board {
     /// Time from one frame set to the next.
     [[nodiscard]] hal::Instant period() const { return period_; }
     [[nodiscard]] CameraFormats formats() const;
+    /// Live cameras that could not be opened yet: bits of cameras_missing.
+    [[nodiscard]] std::uint32_t cameras_awaited() const { return cameras_awaited_; }
     /// Of each camera, in the order of the bits of cameras_missing; empty unless it is recorded.
     [[nodiscard]] const std::vector<FrameTap*>& taps() const { return taps_; }
 
     hal::Checked<std::unique_ptr<hal::Publisher>> OpenPublisher(const PublishConfig& config);
+    /// Of the service manager that started this program; null: none did.
+    static hal::Checked<std::unique_ptr<hal::Watchdog>> OpenWatchdog();
     /// What this system grants a subscriber that asks for a large receive buffer; empty: not known.
     [[nodiscard]] static std::optional<int> ReceiveBufferBytes();
 
@@ -69,8 +77,7 @@ class Board {
     hal::Checked<hal::Done> OpenSimulation(const RigConfig& config);
     hal::Checked<hal::Done> OpenCamera(const RigConfig& config, algo::Unit unit,
                                        const CameraConfig& camera, int slots);
-    hal::Checked<hal::Done> OpenLiveCamera(const RigConfig& config, algo::Unit unit,
-                                           const CameraConfig& camera, int slots);
+    hal::Checked<hal::Done> OpenLiveCameras(const RigConfig& config, int slots);
     void OpenLogCamera(const RigConfig& config, algo::Unit unit, const CameraConfig& camera,
                        int slots);
     hal::Camera& Add(algo::Unit unit, std::unique_ptr<hal::Camera> camera);
@@ -84,11 +91,13 @@ class Board {
     Cameras cameras_;
     std::vector<FrameTap*> taps_;
     std::vector<LiveCamera> live_cameras_;
+    std::uint32_t cameras_awaited_ = 0;
     std::vector<LogCamera> log_cameras_;
     std::unique_ptr<hal::CanBus> can_bus_;
     drivers::LcmLogCanBus* log_can_bus_ = nullptr;  ///< the same, of a recording
     bool is_can_live_ = false;
     hal::Instant period_{};
+    std::unique_ptr<hal::EventLog> event_log_;
     EventQueue events_;
     std::unique_ptr<FrameSynchronizer> sets_;  // last: it uses cameras, events and clock
     LiveFrameSynchronizer* live_ = nullptr;

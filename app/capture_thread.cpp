@@ -61,7 +61,8 @@ void CaptureThread::NoteLost(hal::Instant now) {
 }
 
 void CaptureThread::Tell(hal::EventCode code, hal::Instant when, const hal::EventText& text) {
-    std::fprintf(stderr, "camera %s: %s\n", name_.c_str(), text.c_str());
+    if (!events_.is_on_stderr())
+        std::fprintf(stderr, "camera %s: %s\n", name_.c_str(), text.c_str());
     events_.Put({.code = code, .when = when, .subject = std::string_view(name_), .text = text});
 }
 

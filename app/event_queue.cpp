@@ -4,12 +4,13 @@
 
 namespace hitchview::app {
 
-EventQueue::EventQueue() {
+EventQueue::EventQueue(hal::EventLog* log) : log_(log) {
     for (std::size_t i = 0; i < kCapacity; ++i) places_[i].turn.store(i);
 }
 
 bool EventQueue::Put(const hal::Event& event) {
     Count(event.code);
+    if (log_ != nullptr) log_->Add(event);
     std::uint64_t turn = 0;
     Place* const place = Claim(turn);
     if (place == nullptr) {

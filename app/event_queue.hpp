@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "hal/event.hpp"
+#include "hal/event_log.hpp"
 
 namespace hitchview::app {
 
@@ -23,7 +24,8 @@ class EventQueue {
  public:
     static constexpr std::size_t kCapacity = 64;
 
-    EventQueue();
+    /// `log`, unless it is null, is told of each event that is put here, and must outlive it.
+    explicit EventQueue(hal::EventLog* log = nullptr);
     EventQueue(const EventQueue&) = delete;
     EventQueue& operator=(const EventQueue&) = delete;
 
@@ -31,6 +33,9 @@ class EventQueue {
     bool Put(const hal::Event& event);
     /// Empty when there is nothing. Thread: one.
     std::optional<hal::Event> Take();
+
+    /// What is put here appears where stderr goes. Any thread.
+    [[nodiscard]] bool is_on_stderr() const { return log_ != nullptr && log_->has_stderr(); }
 
     /// Since construction. Any thread.
     [[nodiscard]] EventCounts counts() const;
@@ -47,6 +52,7 @@ class EventQueue {
     Place* Claim(std::uint64_t& turn);
     void Count(hal::EventCode code);
 
+    hal::EventLog* const log_;
     std::array<Place, kCapacity> places_;
     alignas(64) std::atomic<std::uint64_t> end_{0};
     alignas(64) std::uint64_t begin_ = 0;  // the reader's

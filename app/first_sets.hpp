@@ -13,11 +13,15 @@ inline constexpr int kFirstSets = 10;
 /// Looks at one set; true once it has seen enough.
 using FirstSetsHook = std::function<bool(const FrameSet&)>;
 
-/// Shows `look` the first sets, at most kFirstSets, until it has seen enough or `stop` is set. Live
-/// cameras start one after the other, some of them a second late: before, at most `patience` sets
-/// that lack a camera are passed over. A recording that is over ends it too, unless it had no set
-/// at all. Other errors: those of `sets`.
-hal::Result<hal::Done> ShowFirstSets(FrameSynchronizer& sets, int patience,
+/// Live cameras start one after the other, some of them a second late.
+struct StartPatience {
+    int sets = 0;  ///< that lack a camera and are passed over before the first, at most
+    std::uint32_t cameras_awaited = 0;  ///< that nobody waits for: bits of cameras_missing
+};
+
+/// Shows `look` the first sets, at most kFirstSets, until it has seen enough or `stop` is set. A
+/// recording that is over ends it too, unless it had no set at all. Other errors: those of `sets`.
+hal::Result<hal::Done> ShowFirstSets(FrameSynchronizer& sets, StartPatience patience,
                                      const FirstSetsHook& look, const std::atomic<bool>& stop);
 
 }  // namespace hitchview::app

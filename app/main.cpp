@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/await_verb.hpp"
 #include "app/bench_verb.hpp"
 #include "app/cameras_verb.hpp"
 #include "app/demo_verb.hpp"
@@ -254,6 +255,8 @@ int main(int argc, char** argv) {
     const CLI::App& scenarios_verb = AddScenarios(app, scenarios);
     BenchOptions bench;
     const CLI::App& bench_verb = AddBench(app, bench);
+    AwaitOptions await;
+    const CLI::App& await_verb = AddAwait(app, await);
     CamerasOptions cameras;
     const CLI::App& cameras_verb = AddCameras(app, cameras);
     DoctorOptions doctor;
@@ -276,6 +279,7 @@ int main(int argc, char** argv) {
     if (record_verb.parsed()) return RecordVerb(record, stop, trigger);
     if (scenarios_verb.parsed()) return ScenariosVerb(scenarios, stop);
     if (bench_verb.parsed()) return BenchVerb(bench, stop);
+    if (await_verb.parsed()) return AwaitVerb(await, stop);
     if (cameras_verb.parsed()) return CamerasVerb(cameras);
     if (doctor_verb.parsed()) return DoctorVerb(doctor);
     if (check_verb.parsed()) return CheckVerb(check, stop);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "app/playback_speed.hpp"
 #include "app/thread_schedule.hpp"
@@ -74,6 +75,7 @@ void PanoramaPublisher::Work() {
     // What came while the last one was sent.
     SendHitchAngles();
     SendEvents();
+    if (beside_.watchdog != nullptr) beside_.watchdog->Stop();
 }
 
 void PanoramaPublisher::Send(Filled& filled) {
@@ -83,12 +85,22 @@ void PanoramaPublisher::Send(Filled& filled) {
         return;
     }
     const hal::PanoramaImage image = ImageOf(filled.item, jpeg.value());
-    {
-        const StageTimer timer(times_.send);
-        counts_.Count(publisher_.Publish(image));
-        SendStatus(filled.item);
-    }
+    SendImage(filled.item, image);
     side_.SendViewports(filled.item.picture, image, helpers_);
+}
+
+void PanoramaPublisher::SendImage(const Item& item, const hal::PanoramaImage& image) {
+    const StageTimer timer(times_.send);
+    const auto outcome = publisher_.Publish(image);
+    counts_.Count(outcome);
+    if (outcome) Feed();
+    SendStatus(item);
+}
+
+void PanoramaPublisher::Feed() {
+    if (beside_.watchdog == nullptr) return;
+    if (!std::exchange(ready_, true)) beside_.watchdog->Ready();
+    beside_.watchdog->Feed();
 }
 
 hal::Result<std::span<const std::uint8_t>> PanoramaPublisher::Compress(
@@ -146,6 +158,7 @@ void PanoramaPublisher::SendHealth() {
     if (!health) return;
     Complete(*health);
     counts_.Count(publisher_.Publish(*health));
+    if (beside_.watchdog != nullptr) beside_.watchdog->Show(*health);
 }
 
 void PanoramaPublisher::Complete(hal::Health& health) const {

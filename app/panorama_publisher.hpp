@@ -15,6 +15,7 @@
 #include "hal/clock.hpp"
 #include "hal/frame_pool.hpp"
 #include "hal/publisher.hpp"
+#include "hal/watchdog.hpp"
 
 namespace hitchview::app {
 
@@ -36,7 +37,8 @@ struct PanoramaPublisherOptions {
 struct SentBeside {
     TelemetryThread* telemetry = nullptr;
     EventQueue* events = nullptr;
-    RunWatch* watch = nullptr;  ///< health, and the events that it puts into `events`
+    RunWatch* watch = nullptr;          ///< health, and the events that it puts into `events`
+    hal::Watchdog* watchdog = nullptr;  ///< of the service manager: fed by each panorama sent
 };
 
 /// Compresses and sends panoramas off the deadline, on a thread of its own (`publish`), which
@@ -90,6 +92,8 @@ class PanoramaPublisher {
 
     void Work();
     void Send(Filled& filled);
+    void SendImage(const Item& item, const hal::PanoramaImage& image);
+    void Feed();
     hal::Result<std::span<const std::uint8_t>> Compress(const hal::FrameView& picture);
     [[nodiscard]] hal::PanoramaImage ImageOf(const Item& item,
                                              std::span<const std::uint8_t> jpeg) const;
@@ -111,6 +115,7 @@ class PanoramaPublisher {
     PublishTimes times_;
     int newest_bytes_ = 0;  // of the newest panorama as JPEG
     int newest_quality_ = 0;
+    bool ready_ = false;  // a panorama was handed over
     std::atomic<hal::Instant::rep> start_ns_{0};
     std::atomic<std::uint64_t> dropped_{0};
     PublishCounts counts_;

@@ -78,8 +78,9 @@ Motion MakeMotion(const RigGeometry& rig, const algo::UnifiedVertexMotionOptions
 
 /// Looks at the first frame sets; the cameras are used up by that.
 hal::Checked<hal::Done> Prime(Board& board, Pipeline& pipeline, const std::atomic<bool>& stop) {
-    const int patience =
-        board.live() == nullptr ? 0 : static_cast<int>(kLongestStart / board.period());
+    const StartPatience patience{
+        .sets = board.live() == nullptr ? 0 : static_cast<int>(kLongestStart / board.period()),
+        .cameras_awaited = board.cameras_awaited()};
     const auto look = [&](const FrameSet& set) { return pipeline.Prime(set); };
     const auto shown = ShowFirstSets(board.sets(), patience, look, stop);
     if (!shown) return CameraFailure(shown.error());
@@ -162,7 +163,8 @@ hal::Checked<RunSummary> Run(const RigConfig& config, const RunOptions& options,
     const algo::UnifiedVertexMotionOptions motion_options = MotionOptions(config, options);
     const Board::Options opened{.held_frames = motion_options.lookahead_frames + 2 +
                                                RunOutputs::HeldFrames(config, options),
-                                .recorded = options.record && !config.record.folder.empty()};
+                                .recorded = options.record && !config.record.folder.empty(),
+                                .awaits_cameras = options.realtime};
     auto board = Board::Open(config, opened);
     if (!board) return board.error();
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());

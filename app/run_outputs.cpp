@@ -207,6 +207,14 @@ hal::Checked<SideSources> RunOutputs::OpenSideSources(const RigConfig& config, c
                        .previews = previews_.get()};
 }
 
+hal::Checked<hal::Done> RunOutputs::OpenWatchdog(const RunOptions& options) {
+    if (!options.realtime) return hal::Done{};
+    auto watchdog = Board::OpenWatchdog();
+    if (!watchdog) return watchdog.error();
+    watchdog_ = std::move(*watchdog);
+    return hal::Done{};
+}
+
 hal::Checked<hal::Done> RunOutputs::StartPublishing(const RigConfig& config,
                                                     const RunOptions& options, const Parts& parts,
                                                     const RunSummary& run) {
@@ -216,8 +224,9 @@ hal::Checked<hal::Done> RunOutputs::StartPublishing(const RigConfig& config,
     auto side =
         options.publish ? OpenSideSources(config, parts) : hal::Checked<SideSources>(SideSources{});
     if (!side) return side.error();
+    if (const auto opened = OpenWatchdog(options); !opened) return opened;
     const ReceiveBufferVerdict buffer = ReceiveBuffer(config.publish, options.publish);
-    if (!buffer.warning.view().empty())
+    if (!buffer.warning.view().empty() && !board.events().is_on_stderr())
         std::fprintf(stderr, "publish: %s\n", buffer.warning.c_str());
     const bool seams = run.cameras[algo::Unit::kTrailer] > 0;
     watch_ = std::make_unique<RunWatch>(
@@ -229,7 +238,10 @@ hal::Checked<hal::Done> RunOutputs::StartPublishing(const RigConfig& config,
         board.events());
     publisher_ = std::make_unique<PanoramaPublisher>(
         *receivers_, board.clock(),
-        SentBeside{.telemetry = telemetry_.get(), .events = &board.events(), .watch = watch_.get()},
+        SentBeside{.telemetry = telemetry_.get(),
+                   .events = &board.events(),
+                   .watch = watch_.get(),
+                   .watchdog = watchdog_.get()},
         parts.pipeline.format(),
         PanoramaPublisherOptions{.jpeg = {.budget_bytes = buffer.budget_bytes,
                                           .highest_quality = config.publish.jpeg_quality},

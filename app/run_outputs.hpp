@@ -62,6 +62,7 @@ class RunOutputs final : private ShownSets {
     hal::Checked<hal::Done> OpenNetwork(const RigConfig& config, Board& board);
     hal::Checked<SideSources> OpenSideSources(const RigConfig& config, const Parts& parts);
     void OpenTelemetry(const RigConfig& config, Board& board);
+    hal::Checked<hal::Done> OpenWatchdog(const RunOptions& options);
     hal::Checked<hal::Done> StartPublishing(const RigConfig& config, const RunOptions& options,
                                             const Parts& parts, const RunSummary& run);
     /// Previews are made of sets that were shown.
@@ -85,6 +86,7 @@ class RunOutputs final : private ShownSets {
     std::unique_ptr<RunWatch> watch_;
     std::unique_ptr<OverlayMaker> overlay_;
     std::unique_ptr<PreviewThread> previews_;
+    std::unique_ptr<hal::Watchdog> watchdog_;
     std::unique_ptr<PanoramaPublisher> publisher_;
 };
 

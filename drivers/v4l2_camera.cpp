@@ -39,6 +39,8 @@ hal::CameraLoss LossOf(const V4l2Failure& failure) {
     using hal::CameraLoss;
     const int number = failure.error_number;
     if (number == ENODEV || number == ENXIO || number == ENOENT) return CameraLoss::kDisconnected;
+    if (number == EBUSY) return CameraLoss::kBusy;
+    if (number == EACCES || number == EPERM) return CameraLoss::kForbidden;
     if (failure.error == Error::kTimeout) return CameraLoss::kSilent;
     if (failure.error == Error::kNotFound) return CameraLoss::kNoSignal;
     if (failure.error == Error::kUnsupported) return CameraLoss::kOtherFormat;
@@ -65,20 +67,43 @@ V4l2Camera::~V4l2Camera() {
 
 Checked<std::unique_ptr<V4l2Camera>> V4l2Camera::Open(const V4l2CameraOptions& options,
                                                       V4l2Kernel& kernel) {
+    auto opened = TryOpen(options, kernel);
+    if (!opened) return opened.error().words;
+    return std::move(opened.value());
+}
+
+V4l2Camera::Opened V4l2Camera::TryOpen(const V4l2CameraOptions& options, V4l2Kernel& kernel) {
     HV_EXPECT(options.wish.rate_hz > 0 && options.silence_periods >= 2);
     HV_EXPECT(options.orientation.rotation_deg == 0 || options.orientation.rotation_deg == 180);
     std::unique_ptr<V4l2Camera> camera(new V4l2Camera(options, kernel));
-    if (const auto started = camera->Start(); !started) {
-        return options.path + ": " + started.error();
+    if (auto started = camera->Start(); !started) {
+        V4l2Refusal refusal = started.error();
+        refusal.words = options.path + ": " + refusal.words;
+        return refusal;
     }
     return camera;
 }
 
-Checked<Done> V4l2Camera::Start() {
+std::unique_ptr<V4l2Camera> V4l2Camera::Await(const V4l2CameraOptions& options,
+                                              const V4l2Failure& why,
+                                              std::span<const V4l2Camera* const> others,
+                                              V4l2Kernel& kernel) {
+    std::vector<const V4l2Negotiation*> agreed;
+    for (const V4l2Camera* const other : others) agreed.push_back(&other->negotiation_);
+    std::unique_ptr<V4l2Camera> camera(new V4l2Camera(options, kernel));
+    camera->Settle(camera->negotiation_.Expect(agreed));
+    camera->last_refusal_ = why;
+    camera->loss_ = LossOf(why);
+    camera->drained_ = true;  // nothing comes before it is had
+    return camera;
+}
+
+hal::Result<Done, V4l2Refusal> V4l2Camera::Start() {
     const auto granted = negotiation_.Agree();
     if (!granted) return granted.error();
     Settle(granted.value());
-    if (const auto streams = Stream(); !streams) return ToString(streams.error());
+    if (const auto streams = Stream(); !streams)
+        return V4l2Refusal{.words = ToString(streams.error()), .failure = streams.error()};
     NoteFacts();
     return Done{};
 }

@@ -2,10 +2,11 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "drivers/frame_accounting.hpp"
-#include "drivers/v4l2_buffers.hpp"
 #include "drivers/frame_jpeg_decoder.hpp"
+#include "drivers/v4l2_buffers.hpp"
 #include "drivers/v4l2_negotiation.hpp"
 #include "drivers/v4l2_stamps.hpp"
 #include "hal/camera.hpp"
@@ -48,6 +49,19 @@ class V4l2Camera final : public hal::Camera {
     /// The error names device, what was wanted, what was got and what is offered.
     static hal::Checked<std::unique_ptr<V4l2Camera>> Open(const V4l2CameraOptions& options,
                                                           V4l2Kernel& kernel = SystemKernel());
+    /// The same, for who goes on without a camera that may come later.
+    using Opened = hal::Result<std::unique_ptr<V4l2Camera>, V4l2Refusal>;
+    static Opened TryOpen(const V4l2CameraOptions& options, V4l2Kernel& kernel = SystemKernel());
+
+    /// A camera that cannot be opened yet, for the reason that TryOpen gave, and is lost from the
+    /// start: Reopen has it as soon as it is there. Nobody can ask it what it gives; its format is
+    /// what V4l2Negotiation::Expect makes of the options and of the `others`, cameras of the same
+    /// rig that were opened. kUnsupported from Reopen, with the reason on stderr: it gives another,
+    /// or cannot be set up like them.
+    static std::unique_ptr<V4l2Camera> Await(const V4l2CameraOptions& options,
+                                             const V4l2Failure& why,
+                                             std::span<const V4l2Camera* const> others,
+                                             V4l2Kernel& kernel = SystemKernel());
     ~V4l2Camera() override;
 
     [[nodiscard]] const V4l2CameraFacts& facts() const { return facts_; }
@@ -62,7 +76,7 @@ class V4l2Camera final : public hal::Camera {
  private:
     V4l2Camera(const V4l2CameraOptions& options, V4l2Kernel& kernel);
 
-    hal::Checked<hal::Done> Start();
+    hal::Result<hal::Done, V4l2Refusal> Start();
     void Settle(const V4l2Granted& granted);
     void NoteFacts();
 

@@ -37,8 +37,12 @@ std::optional<std::int64_t> Number(const std::string& text) {
     return value;
 }
 
+bool IsMenu(std::uint32_t type) {
+    return type == V4L2_CTRL_TYPE_MENU || type == V4L2_CTRL_TYPE_INTEGER_MENU;
+}
+
 bool IsMenu(const V4l2Control& control) {
-    return control.type == V4L2_CTRL_TYPE_MENU || control.type == V4L2_CTRL_TYPE_INTEGER_MENU;
+    return IsMenu(control.type);
 }
 
 void ListMenu(const V4l2Device& device, V4l2Control& control) {
@@ -124,11 +128,30 @@ std::optional<std::int64_t> ValueIn(const V4l2Control& control, const std::strin
     return maybe_value;
 }
 
+bool IsSettable(std::uint32_t type, std::uint32_t flags) {
+    const bool number = type == V4L2_CTRL_TYPE_INTEGER || type == V4L2_CTRL_TYPE_BOOLEAN ||
+                        type == V4L2_CTRL_TYPE_INTEGER64 || IsMenu(type);
+    return number && (flags & V4L2_CTRL_FLAG_READ_ONLY) == 0;
+}
+
 bool IsSettable(const V4l2Control& control) {
-    const bool number = control.type == V4L2_CTRL_TYPE_INTEGER ||
-                        control.type == V4L2_CTRL_TYPE_BOOLEAN ||
-                        control.type == V4L2_CTRL_TYPE_INTEGER64 || IsMenu(control);
-    return number && (control.flags & V4L2_CTRL_FLAG_READ_ONLY) == 0;
+    return IsSettable(control.type, control.flags);
+}
+
+/// Each mirror, and whether the picture needs it.
+std::array<std::pair<std::uint32_t, bool>, 2> MirrorsOf(const V4l2Orientation& orientation) {
+    const bool turned = orientation.rotation_deg == 180;
+    return {std::pair{std::uint32_t{V4L2_CID_HFLIP}, orientation.horizontal_flip != turned},
+            std::pair{std::uint32_t{V4L2_CID_VFLIP}, orientation.vertical_flip != turned}};
+}
+
+/// One control of a device, if it has it.
+std::optional<v4l2_query_ext_ctrl> Ask(const V4l2Device& device, std::uint32_t id) {
+    v4l2_query_ext_ctrl query{};
+    query.id = id;
+    if (!device.Call(VIDIOC_QUERY_EXT_CTRL, "VIDIOC_QUERY_EXT_CTRL", query)) return std::nullopt;
+    if ((query.flags & V4L2_CTRL_FLAG_DISABLED) != 0) return std::nullopt;
+    return query;
 }
 
 hal::Checked<V4l2ControlValue> Plan(const std::vector<V4l2Control>& controls,
@@ -183,12 +206,9 @@ hal::Checked<std::vector<V4l2ControlValue>> PlanControls(
 
 hal::Checked<std::vector<V4l2ControlValue>> PlanOrientation(
     const std::vector<V4l2Control>& controls, const V4l2Orientation& orientation) {
-    const bool turned = orientation.rotation_deg == 180;
-    const std::array mirrors{std::pair{V4L2_CID_HFLIP, orientation.horizontal_flip != turned},
-                             std::pair{V4L2_CID_VFLIP, orientation.vertical_flip != turned}};
     std::vector<V4l2ControlValue> values;
-    for (const auto& [id, wanted] : mirrors) {
-        const V4l2Control* mirror = Find(controls, static_cast<std::uint32_t>(id));
+    for (const auto& [id, wanted] : MirrorsOf(orientation)) {
+        const V4l2Control* mirror = Find(controls, id);
         if (mirror != nullptr && IsSettable(*mirror)) {
             values.push_back({mirror->id, wanted ? 1 : 0, false});
         } else if (wanted) {
@@ -213,6 +233,18 @@ hal::Checked<std::vector<V4l2ControlValue>> PlanSettings(
     return settings;
 }
 
+V4l2Result<V4l2Mirrors> AskMirrors(const V4l2Device& device, const V4l2Orientation& orientation) {
+    V4l2Mirrors mirrors;
+    for (const auto& [id, wanted] : MirrorsOf(orientation)) {
+        const auto mirror = Ask(device, id);
+        if (mirror && IsSettable(mirror->type, mirror->flags))
+            mirrors.values.at(mirrors.count++) = {id, wanted ? 1 : 0, false};
+        else if (wanted)
+            return V4l2Failure{hal::Error::kUnsupported, "it cannot mirror the picture", 0};
+    }
+    return mirrors;
+}
+
 V4l2Result<hal::Done> SetControl(const V4l2Device& device, const V4l2ControlValue& value) {
     v4l2_ext_control control{};
     control.id = value.id;
@@ -231,6 +263,11 @@ V4l2Result<hal::Done> SetControl(const V4l2Device& device, const V4l2ControlValu
 bool HasExposure(const std::vector<V4l2Control>& controls) {
     const V4l2Control* exposure = Find(controls, V4L2_CID_EXPOSURE_ABSOLUTE);
     return exposure != nullptr && (exposure->flags & V4L2_CTRL_FLAG_WRITE_ONLY) == 0;
+}
+
+bool AskExposure(const V4l2Device& device) {
+    const auto exposure = Ask(device, V4L2_CID_EXPOSURE_ABSOLUTE);
+    return exposure && (exposure->flags & V4L2_CTRL_FLAG_WRITE_ONLY) == 0;
 }
 
 std::optional<hal::Instant> ReadExposure(const V4l2Device& device) {

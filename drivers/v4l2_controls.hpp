@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -69,11 +70,23 @@ hal::Checked<std::vector<V4l2ControlValue>> PlanSettings(
     const std::vector<V4l2Control>& controls, const V4l2Orientation& orientation,
     const std::vector<V4l2ControlWish>& wishes);
 
+/// The mirrors that a device has, and what they are to be set to.
+struct V4l2Mirrors {
+    std::array<V4l2ControlValue, 2> values{};
+    std::size_t count = 0;
+};
+
+/// PlanOrientation for a device that comes while the program runs. kUnsupported: it lacks a mirror
+/// that is needed. No memory from the heap.
+V4l2Result<V4l2Mirrors> AskMirrors(const V4l2Device& device, const V4l2Orientation& orientation);
+
 /// No memory from the heap.
 V4l2Result<hal::Done> SetControl(const V4l2Device& device, const V4l2ControlValue& value);
 
 /// V4L2_CID_EXPOSURE_ABSOLUTE can be read. Pure.
 bool HasExposure(const std::vector<V4l2Control>& controls);
+/// The same of a device that is asked for this control alone. No memory from the heap.
+bool AskExposure(const V4l2Device& device);
 /// Only of a device that HasExposure. No memory from the heap.
 std::optional<hal::Instant> ReadExposure(const V4l2Device& device);
 

@@ -1,5 +1,7 @@
 #include "drivers/v4l2_negotiation.hpp"
 
+#include <algorithm>
+#include <string_view>
 #include <utility>
 
 namespace hitchview::drivers {
@@ -19,32 +21,103 @@ std::string FormatText(std::uint32_t fourcc, V4l2Size size, double rate_hz) {
     return FourccText(fourcc) + " " + SizeText(size) + " at " + RateText(rate_hz) + " Hz";
 }
 
+constexpr V4l2Failure kOtherFormat{hal::Error::kUnsupported, "it gives another format", 0};
+
+V4l2Refusal WrongWish(std::string words) {
+    return {.words = std::move(words), .is_wish_wrong = true};
+}
+
+/// An input or a value that the device does not have is refused each time.
+V4l2Refusal RefusalOf(const V4l2Failure& failure) {
+    const std::string_view call = failure.call;
+    const int number = failure.error_number;
+    const bool ours = call == "VIDIOC_S_INPUT" || call == "VIDIOC_S_EXT_CTRLS";
+    return {.words = ToString(failure),
+            .failure = failure,
+            .is_wish_wrong = ours && (number == EINVAL || number == ERANGE || number == EACCES)};
+}
+
 }  // namespace
 
-Checked<V4l2Granted> V4l2Negotiation::Agree() {
+hal::Result<V4l2Granted, V4l2Refusal> V4l2Negotiation::Agree() {
     const V4l2Size& size = options_.wish.size;
     if (size.width_px <= 0 || size.height_px <= 0 || size.width_px % 2 != 0 ||
         size.height_px % 2 != 0) {
-        return "size is " + SizeText(size) + ", must be even";
+        return WrongWish("size is " + SizeText(size) + ", must be even");
     }
-    if (const auto connected = Connect(); !connected) return ToString(connected.error());
+    if (const auto connected = Connect(); !connected) return RefusalOf(connected.error());
     identity_ = device_.identity();
     if (const auto chosen = Choose(); !chosen) return chosen.error();
     const auto granted = Configure();
-    if (!granted) return ToString(granted.error());
-    if (const auto checked = Check(granted.value()); !checked) return checked.error();
+    if (!granted) return RefusalOf(granted.error());
+    if (const auto checked = Check(granted.value()); !checked)
+        return V4l2Refusal{.words = checked.error(), .failure = kOtherFormat};
     first_ = granted.value();
+    met_ = true;
     return first_;
 }
 
-Checked<Done> V4l2Negotiation::Choose() {
-    const auto chosen = ChooseFormat(ListOffers(device_, options_.wish.size), options_.wish);
-    if (!chosen) return chosen.error();
+V4l2Granted V4l2Negotiation::Expect(std::span<const V4l2Negotiation* const> others) {
+    const V4l2Negotiation* const like = MostLike(others);
+    pixel_format_ = FindV4l2PixelFormat(options_.wish.format);
+    if (pixel_format_ == nullptr)
+        pixel_format_ = like != nullptr ? like->pixel_format_ : &V4l2PixelFormats().front();
+    const std::uint32_t fourcc = pixel_format_->fourcc;
+    const bool same = like != nullptr && like->pixel_format_ == pixel_format_;
+    first_.layout = {.fourcc = fourcc,
+                     .width_px = options_.wish.size.width_px,
+                     .height_px = options_.wish.size.height_px,
+                     .memory_planes = pixel_format_->memory_planes,
+                     .range = same ? like->first_.layout.range : RangeOf(fourcc, 0, 0)};
+    first_.rate_hz = options_.wish.rate_hz;
+    for (const V4l2ControlWish& wish : options_.controls) {
+        const V4l2ControlValue* value = nullptr;
+        for (const V4l2Negotiation* const other : others)
+            if (value == nullptr) value = other->FindValue(wish);
+        controls_known_ = controls_known_ && value != nullptr;
+        if (value != nullptr) control_values_.push_back(*value);
+    }
+    return first_;
+}
+
+/// Of those whose format tells something about ours.
+const V4l2Negotiation* V4l2Negotiation::MostLike(
+    std::span<const V4l2Negotiation* const> others) const {
+    const auto likeness = [this](const V4l2Negotiation* other) {
+        const V4l2Wish& there = other->options_.wish;
+        const bool same_size = there.size.width_px == options_.wish.size.width_px &&
+                               there.size.height_px == options_.wish.size.height_px;
+        const bool same_format = other->pixel_format_->name == options_.wish.format;
+        return 4 * int{same_format} + 2 * int{same_size} +
+               int{there.format == options_.wish.format};
+    };
+    const auto most = std::ranges::max_element(others, {}, likeness);
+    return most == others.end() ? nullptr : *most;
+}
+
+const V4l2ControlValue* V4l2Negotiation::FindValue(const V4l2ControlWish& wish) const {
+    const std::size_t mirrors = control_values_.size() - options_.controls.size();
+    for (std::size_t i = 0; i < options_.controls.size(); ++i) {
+        const V4l2ControlWish& own = options_.controls[i];
+        if (own.control == wish.control && own.value == wish.value)
+            return &control_values_[mirrors + i];
+    }
+    return nullptr;
+}
+
+hal::Result<Done, V4l2Refusal> V4l2Negotiation::Choose() {
+    const V4l2Wish& wish = options_.wish;
+    const auto chosen = ChooseFormat(ListOffers(device_, wish.size), wish);
+    if (!chosen) {
+        const bool known = wish.format == "best" || FindV4l2PixelFormat(wish.format) != nullptr;
+        return V4l2Refusal{
+            .words = chosen.error(), .failure = kOtherFormat, .is_wish_wrong = !known};
+    }
     pixel_format_ = chosen.value();
     const auto menus = options_.controls.empty() ? V4l2Menus::kLeftOut : V4l2Menus::kListed;
     const std::vector<V4l2Control> controls = ListControls(device_, menus);
     auto settings = PlanSettings(controls, options_.orientation, options_.controls);
-    if (!settings) return settings.error();
+    if (!settings) return WrongWish(settings.error());
     control_values_ = std::move(settings.value());
     has_exposure_ = HasExposure(controls);
     return Done{};
@@ -84,6 +157,9 @@ V4l2Result<V4l2Granted> V4l2Negotiation::Configure() {
     if (!layout) return layout.error();
     const auto maybe_rate_hz = SetRate(device_, options_.wish.rate_hz);
     if (!maybe_rate_hz) return maybe_rate_hz.error();
+    for (const V4l2ControlValue& value : std::span(mirrors_.values).first(mirrors_.count)) {
+        if (const auto set = SetControl(device_, value); !set) return set.error();
+    }
     for (const V4l2ControlValue& value : control_values_) {
         if (const auto set = SetControl(device_, value); !set) return set.error();
     }
@@ -94,12 +170,38 @@ V4l2Result<V4l2Granted> V4l2Negotiation::Configure() {
 
 V4l2Result<V4l2Granted> V4l2Negotiation::AgreeAgain() {
     if (const auto connected = Connect(); !connected) return connected.error();
-    if (!IsSameDevice()) {
+    if (!met_) {
+        if (const auto met = Meet(); !met) return met.error();
+    } else if (!IsSameDevice()) {
         return V4l2Failure{hal::Error::kUnsupported, "another device is there", 0};
     }
     const auto granted = Configure();
-    if (!granted || IsSameFormat(granted.value())) return granted;
-    return V4l2Failure{hal::Error::kUnsupported, "it gives another format", 0};
+    if (!granted) return granted;
+    if (IsSameFormat(granted.value())) {
+        met_ = true;
+        return granted;
+    }
+    if (met_) return kOtherFormat;
+    return V4l2Failure{hal::Error::kUnsupported,
+                       "it gives another format than the cameras that were there at the start; it "
+                       "will be taken in when the program starts again",
+                       0};
+}
+
+/// Learns of a device that comes for the first time what the others do not tell.
+V4l2Result<Done> V4l2Negotiation::Meet() {
+    if (!controls_known_) {
+        return V4l2Failure{hal::Error::kUnsupported,
+                           "no other camera has the same controls; it will be taken in when the "
+                           "program starts again",
+                           0};
+    }
+    const auto mirrors = AskMirrors(device_, options_.orientation);
+    if (!mirrors) return mirrors.error();
+    mirrors_ = mirrors.value();
+    has_exposure_ = AskExposure(device_);
+    identity_ = device_.identity();
+    return Done{};
 }
 
 bool V4l2Negotiation::IsSameDevice() const {

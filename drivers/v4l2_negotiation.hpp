@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,14 @@ struct V4l2Granted {
     std::optional<hal::Instant> maybe_exposure;  ///< as it is now
 };
 
+/// Why a device cannot be had.
+struct V4l2Refusal {
+    std::string words;
+    V4l2Failure failure{};
+    /// What was asked of it is wrong, and stays so whenever the device is asked again.
+    bool is_wish_wrong = false;
+};
+
 /// Brings a device to give what the options ask for, and to the same again when it comes back.
 /// Thread: one at a time.
 class V4l2Negotiation {
@@ -46,10 +55,15 @@ class V4l2Negotiation {
 
     /// Opens the device and chooses its format. The error names what was wanted, what was got and
     /// what is offered.
-    hal::Checked<V4l2Granted> Agree();
+    hal::Result<V4l2Granted, V4l2Refusal> Agree();
 
-    /// The same format again, after the device was closed. kUnsupported: another device is there,
-    /// or another format is all it gives. No memory from the heap.
+    /// In place of Agree, for a device that is not there yet: what it may be expected to give.
+    /// `others` have agreed. Where the options leave the format open it is the format of another
+    /// of this size, or of any; controls are set as others set the same to the same value.
+    V4l2Granted Expect(std::span<const V4l2Negotiation* const> others);
+
+    /// The same format again, after the device was closed, or the one expected. kUnsupported:
+    /// another device is there, or another format is all it gives. No memory from the heap.
     V4l2Result<V4l2Granted> AgreeAgain();
 
     [[nodiscard]] V4l2Device& device() { return device_; }
@@ -63,7 +77,11 @@ class V4l2Negotiation {
  private:
     V4l2Result<hal::Done> Connect();
     V4l2Result<V4l2Granted> Configure();
-    hal::Checked<hal::Done> Choose();
+    hal::Result<hal::Done, V4l2Refusal> Choose();
+    V4l2Result<hal::Done> Meet();
+    [[nodiscard]] const V4l2Negotiation* MostLike(
+        std::span<const V4l2Negotiation* const> others) const;
+    [[nodiscard]] const V4l2ControlValue* FindValue(const V4l2ControlWish& wish) const;
     [[nodiscard]] hal::Checked<hal::Done> Check(const V4l2Granted& granted) const;
     [[nodiscard]] bool IsSameDevice() const;
     [[nodiscard]] bool IsSameFormat(const V4l2Granted& granted) const;
@@ -73,7 +91,11 @@ class V4l2Negotiation {
     V4l2Input input_;
     V4l2Identity identity_;
     const V4l2PixelFormat* pixel_format_ = nullptr;
+    V4l2Mirrors mirrors_;  ///< of a device that was expected
+    /// Of the orientation, unless it was expected; then of the wishes.
     std::vector<V4l2ControlValue> control_values_;
+    bool met_ = false;            ///< it has been there once
+    bool controls_known_ = true;  ///< false: a wish that no other camera has too
     bool has_exposure_ = false;
     V4l2Granted first_;
 };

@@ -27,6 +27,8 @@ enum class CameraLoss : std::uint8_t {
     kNoSignal,      ///< nothing is plugged into it, or nothing that it can make out
     kOtherFormat,   ///< what it gives now is not what it was opened for
     kIoError,       ///< it refused to go on
+    kBusy,          ///< another program has it
+    kForbidden,     ///< this program may not open it
 };
 
 constexpr const char* ToString(CameraLoss loss) {
@@ -41,6 +43,10 @@ constexpr const char* ToString(CameraLoss loss) {
             return "another format";
         case CameraLoss::kIoError:
             return "I/O error";
+        case CameraLoss::kBusy:
+            return "in use by another program";
+        case CameraLoss::kForbidden:
+            return "not permitted";
     }
     return "unknown";
 }

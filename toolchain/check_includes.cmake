@@ -19,6 +19,7 @@ set(may_use_algo "^[a-z0-9_]+$|^Eigen/|^opencv2/|^hwy/|^(immintrin|arm_neon)\\.h
 
 # Where app may name a concrete driver: file -> pattern. What demo_verb.cpp may, bench_*, demo_*, scenario_*, simulated_* and truth_* may;
 # log_files stands for log_*, web_files for web_*, record_files for what makes recordings.
+set(drivers_in_app/await_verb.cpp "^drivers/lcm_subscriber\\.hpp$")
 set(drivers_in_app/board.cpp "^drivers/")
 set(drivers_in_app/calib_capture_source.cpp "^drivers/simulated_sheet\\.hpp$")
 set(drivers_in_app/camera_probe.cpp "^drivers/v4l2_(camera|probe)\\.hpp$")

@@ -3,10 +3,14 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <optional>
 
+#include "drivers/systemd_journal.hpp"
 #include "tests/device/live_program.hpp"
 #include "tests/device/live_report.hpp"
+#include "tests/support/datagram_listener.hpp"
 
 // The program on eight virtual cameras, one of which fails while it runs.
 namespace hitchview::app {
@@ -45,11 +49,14 @@ class LiveFaultTest : public testing::Test {
         vivid_.reset();
     }
 
-    void Start(int hdmi_camera = -1) {
+    void Load(int hdmi_camera = -1) {
         vivid_ = std::make_unique<Vivid>(
             tests::VividOptions{.cameras = LiveProgram::kCameras, .hdmi_camera = hdmi_camera});
         ASSERT_TRUE(vivid_->loaded());
         if (hdmi_camera >= 0) SetTimings(tests::k1280x720p30);
+    }
+    void Start(int hdmi_camera = -1) {
+        ASSERT_NO_FATAL_FAILURE(Load(hdmi_camera));
         program_ = std::make_unique<LiveProgram>();
         ASSERT_TRUE(program_->Start());
     }
@@ -128,6 +135,16 @@ class LiveFaultTest : public testing::Test {
             EXPECT_LE(other.until - other.from, kLongestSoundOutage);
         }
     }
+    /// Missing from the first panorama on until soon after it could be had.
+    void ExpectAbsence(Instant until) {
+        const auto outages = Outages(kFaulty);
+        ASSERT_EQ(outages.size(), 1U);
+        std::printf("  there to shown %.0f ms\n", Ms(outages[0].until - until));
+        EXPECT_EQ(outages[0].from, program_->statuses().front().at);
+        EXPECT_GE(outages[0].until, until);
+        EXPECT_LE(outages[0].until - until, kLongestReturn);
+        EXPECT_EQ(FaultyCount("reopened"), 1U);
+    }
     /// Missing now and then at most.
     void ExpectShortOutages(milliseconds longest) {
         std::printf("  %zu outages of at most %.0f ms\n", Outages(kFaulty).size(),
@@ -180,6 +197,49 @@ TEST_F(LiveFaultTest, ACameraThatIsPulledOutAndComesBackIsShownAgain) {
     ExpectOutage(fault_at, end_at);
     ExpectEvents("disconnected");
     EXPECT_EQ(FaultyCount("reopened"), 1U);
+}
+
+TEST_F(LiveFaultTest, ACameraThatIsAbsentAtTheStartIsTakenInWhenItComes) {
+    ASSERT_NO_FATAL_FAILURE(Load());
+    program_ = std::make_unique<LiveProgram>(kFaulty);
+    ASSERT_TRUE(program_->Start(1U << kFaulty));
+    Pass(milliseconds(2000));
+    const Instant there_at = PanoramaListener::Now();
+    program_->Appear();
+    Finish("absent at the start");
+    ExpectAbsence(there_at);
+    ExpectEvents("disconnected");
+}
+
+TEST_F(LiveFaultTest, ACameraThatAnotherProgramHasAtTheStartIsTakenInWhenItIsFree) {
+    ASSERT_NO_FATAL_FAILURE(Load());
+    auto other = drivers::V4l2Camera::Open(tests::VividCamera(kFaulty));
+    ASSERT_TRUE(other) << other.error();
+    program_ = std::make_unique<LiveProgram>();
+    ASSERT_TRUE(program_->Start(1U << kFaulty));
+    const Instant there_at = PanoramaListener::Now();
+    other.value().reset();
+    Finish("busy at the start");
+    ExpectAbsence(there_at);
+    ExpectEvents("in use by another program");
+}
+
+TEST_F(LiveFaultTest, WhatBefallsACameraStandsInTheJournalToo) {
+    std::filesystem::create_directories("/run/systemd/journal");
+    tests::DatagramListener journal(drivers::SystemdJournal::kSocket);
+    setenv("JOURNAL_STREAM", "8:1", 1);
+    ASSERT_NO_FATAL_FAILURE(Start());
+    unsetenv("JOURNAL_STREAM");
+    Set("inject_fatal_streaming_error", 1);
+    Finish("written to the journal");
+    ExpectEvents("I/O error");
+    std::vector<std::string> entries;
+    for (const std::string& entry : journal.TakeAll())
+        if (entry.find("\nCAMERA=") != std::string::npos) entries.push_back(entry);
+    ASSERT_EQ(entries.size(), 2U);
+    const std::string message = std::string("MESSAGE=camera ") + kFaultyName + ": ";
+    EXPECT_TRUE(entries[0].starts_with(message + "lost: I/O error\n")) << entries[0];
+    EXPECT_TRUE(entries[1].starts_with(message + "back after ")) << entries[1];
 }
 
 TEST_F(LiveFaultTest, ACameraThatFailsAndDoesNotStreamAtOnceIsTriedAgain) {

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -23,16 +25,24 @@ class LiveProgram {
  public:
     static constexpr std::size_t kCameras = 8;
 
-    LiveProgram() { WriteSimulatedCalibration(folder_, 320, 180); }
+    /// `absent`: a camera whose path leads nowhere before Appear.
+    explicit LiveProgram(std::optional<std::size_t> absent = std::nullopt) : absent_(absent) {
+        WriteSimulatedCalibration(folder_, 320, 180);
+    }
 
-    /// Returns when panoramas of all cameras come; false if they do not.
-    bool Start() {
+    /// Returns when panoramas of all cameras but `missing` come; false if they do not.
+    bool Start(std::uint32_t missing = 0) {
         program_ = std::make_unique<app::BackgroundProgram>(
             HITCHVIEW, std::vector<std::string>{"run", "--rig", Rig(), "--out", folder_ / "out"});
         const auto end = PanoramaListener::Now() + std::chrono::seconds(30);
-        while (!IsSteady() && PanoramaListener::Now() < end)
+        while (!IsSteady(missing) && PanoramaListener::Now() < end)
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        return IsSteady();
+        return IsSteady(missing);
+    }
+
+    /// The absent camera is there.
+    void Appear() const {
+        std::filesystem::create_symlink("/dev/video" + std::to_string(*absent_), AbsentPath());
     }
 
     /// Ends the program. Its report.
@@ -46,28 +56,36 @@ class LiveProgram {
 
  private:
     std::string Rig() {
-        int device = 0;
-        return folder_.Write("rig.yaml",
-                             "schema: 1\n"
-                             "canvas: {projection: cylinder, size_px: [512, 90]}\n"
-                             "stabilization: {enabled: false}\nstitching: {enabled: false}\n"
-                             "threads: {workers: 1}\n"
-                             "calibration: rig.calib.yaml\n" +
-                                 SimulatedUnits([&](const std::string&) {
-                                     return "{v4l2: /dev/video" + std::to_string(device++) +
-                                            ", format: uyvy, size_px: [320, 180]}";
-                                 }));
+        std::size_t device = 0;
+        return folder_.Write(
+            "rig.yaml",
+            "schema: 1\n"
+            "canvas: {projection: cylinder, size_px: [512, 90]}\n"
+            "stabilization: {enabled: false}\nstitching: {enabled: false}\n"
+            "threads: {workers: 1}\n"
+            "calibration: rig.calib.yaml\n" +
+                SimulatedUnits([&](const std::string&) {
+                    const std::size_t number = device++;
+                    // What the absent one gives is told by the others alone.
+                    return number == absent_ ? "{v4l2: " + AbsentPath() + ", size_px: [320, 180]}"
+                                             : "{v4l2: /dev/video" + std::to_string(number) +
+                                                   ", format: uyvy, size_px: [320, 180]}";
+                }));
     }
 
-    /// The newest second of panoramas lacks no camera.
-    [[nodiscard]] bool IsSteady() const {
+    [[nodiscard]] std::string AbsentPath() const { return folder_ / "absent"; }
+
+    /// The newest second of panoramas lacks these cameras and no others.
+    [[nodiscard]] bool IsSteady(std::uint32_t missing) const {
         constexpr std::size_t kSecond = 30;
         const auto heard = statuses();
         return heard.size() >= kSecond &&
-               std::all_of(heard.end() - kSecond, heard.end(),
-                           [](const HeardStatus& status) { return status.cameras_missing == 0; });
+               std::all_of(heard.end() - kSecond, heard.end(), [&](const HeardStatus& status) {
+                   return status.cameras_missing == missing;
+               });
     }
 
+    std::optional<std::size_t> absent_;
     TemporaryFolder folder_;
     PanoramaListener listener_;
     std::unique_ptr<app::BackgroundProgram> program_;

@@ -36,6 +36,7 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
     std::string bus = "usb-1";
     std::string card = "Fake";
     bool there = true;
+    int absence = ENOENT;  ///< errno of opening it while it is not there
     bool exports = true;
     bool has_rate = true;
     bool poll_lies = false;  ///< a frame is told to be ready, and there is none
@@ -53,7 +54,7 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
     std::map<unsigned long, int> refused;  ///< requests, how often
 
     int Open(const char* /*path*/, int /*flags*/) override {
-        if (!there) return Refuse(ENOENT);
+        if (!there) return Refuse(absence);
         return kDevice;
     }
     int Close(int file) override {
@@ -125,6 +126,8 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
             case VIDIOC_G_CTRL:
                 As<v4l2_control>(argument).value = controls.at(As<v4l2_control>(argument).id);
                 return 0;
+            case VIDIOC_S_EXT_CTRLS:
+                return SetControl(*As<v4l2_ext_controls>(argument).controls);
             default:
                 return AnswerStreaming(request, argument);
         }
@@ -187,12 +190,22 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
     }
 
     int DescribeControl(v4l2_query_ext_ctrl& query) const {
-        const auto next =
-            lists_end ? controls.upper_bound(query.id & V4L2_CTRL_ID_MASK) : controls.begin();
+        const std::uint32_t id = query.id & V4L2_CTRL_ID_MASK;
+        const bool one = id == query.id;
+        const auto next = !lists_end ? controls.begin()
+                          : one      ? controls.find(id)
+                                     : controls.upper_bound(id);
         if (next == controls.end()) return EINVAL;
         query.id = next->first;
         query.type = control_type;
         query.maximum = INT64_MAX;
+        return 0;
+    }
+
+    int SetControl(const v4l2_ext_control& control) {
+        const auto known = controls.find(control.id);
+        if (known == controls.end()) return EINVAL;
+        known->second = control.value;
         return 0;
     }
 

@@ -8,6 +8,7 @@
 #include "app/event_queue.hpp"
 #include "app/panorama_publisher.hpp"
 #include "drivers/steady_clock.hpp"
+#include "hal/fake_event_log.hpp"
 #include "hal/fake_publisher.hpp"
 
 namespace hitchview::app {
@@ -88,6 +89,24 @@ TEST(EventQueueTest, EveryEventOfManyThreadsIsTakenOnceAndInItsThreadsOrderOrIsR
     EXPECT_EQ(counts.happened[0], writers.size() * kEach);
     EXPECT_EQ(taken + counts.refused, counts.happened[0]);
     EXPECT_GT(taken, 0U);
+}
+
+TEST(EventQueueTest, TheLogIsToldOfEveryEventAlsoOfThoseThatDoNotFit) {
+    hal::FakeEventLog log(true);
+    EventQueue queue(&log);
+    for (int i = 0; i < static_cast<int>(EventQueue::kCapacity) + 1; ++i)
+        queue.Put(Numbered(i, "front"));
+    EXPECT_EQ(queue.counts().refused, 1U);
+    ASSERT_EQ(log.events().size(), EventQueue::kCapacity + 1);
+    EXPECT_EQ(log.events().back().subject.view(), "front");
+}
+
+TEST(EventQueueTest, WhatIsPutIsOnStderrOnlyIfThatIsInTheLogToo) {
+    hal::FakeEventLog with(true);
+    hal::FakeEventLog without(false);
+    EXPECT_TRUE(EventQueue(&with).is_on_stderr());
+    EXPECT_FALSE(EventQueue(&without).is_on_stderr());
+    EXPECT_FALSE(EventQueue().is_on_stderr());
 }
 
 TEST(EventQueueTest, ThePublisherSendsWhatIsPut) {

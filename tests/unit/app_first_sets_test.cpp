@@ -31,11 +31,11 @@ class FirstSetsTest : public testing::Test {
  protected:
     /// Numbers of the sets that were looked at; `enough`: the last one.
     std::vector<std::uint32_t> LookedAt(std::deque<std::uint32_t> missing, int patience,
-                                        std::uint32_t enough = 1000) {
+                                        std::uint32_t enough = 1000, std::uint32_t awaited = 0) {
         std::vector<std::uint32_t> seen;
         ScriptedSets sets(std::move(missing));
         outcome_ = ShowFirstSets(
-            sets, patience,
+            sets, {.sets = patience, .cameras_awaited = awaited},
             [&](const FrameSet& set) {
                 seen.push_back(set.sequence);
                 return set.sequence == enough;
@@ -53,6 +53,11 @@ using Numbers = std::vector<std::uint32_t>;
 TEST_F(FirstSetsTest, EndsWhenEnoughWasSeenOrAfterTenSets) {
     EXPECT_EQ(LookedAt(std::deque<std::uint32_t>(99, 0), 0, 2), (Numbers{0, 1, 2}));
     EXPECT_EQ(LookedAt(std::deque<std::uint32_t>(99, 0), 0).size(), std::size_t{kFirstSets});
+}
+
+TEST_F(FirstSetsTest, CamerasThatAreKnownToBeAbsentAreNot) {
+    EXPECT_EQ(LookedAt(std::deque<std::uint32_t>(50, 0b100), 40, 2, 0b100), (Numbers{0, 1, 2}));
+    EXPECT_EQ(LookedAt({0b110, 0b110, 0b100}, 40, 2, 0b100), (Numbers{2})) << "camera 1 is late";
 }
 
 TEST_F(FirstSetsTest, CamerasThatStartLateAreWaitedFor) {

@@ -78,8 +78,12 @@ TEST(FakeWatchdogTest, Counts) {
     watchdog.Ready();
     watchdog.Feed();
     watchdog.Feed();
+    watchdog.Show({});
+    watchdog.Stop();
     EXPECT_EQ(fake.readies, 1);
     EXPECT_EQ(fake.feeds, 2);
+    EXPECT_EQ(fake.shown, 1);
+    EXPECT_EQ(fake.stops, 1);
 }
 
 }  // namespace
