@@ -10,6 +10,7 @@
 #include "app/bench_table.hpp"
 #include "app/config.hpp"
 #include "app/evaluation_statistics.hpp"
+#include "app/exit_code.hpp"
 #include "app/report.hpp"
 #include "app/scenario_frames.hpp"
 #include "app/simulated_geometry.hpp"
@@ -23,15 +24,9 @@ using drivers::SimulatedRig;
 using nlohmann::json;
 
 constexpr int kStopped = 1;
-constexpr int kMachineFailed = 3;
 constexpr int kScalingFrames = 40;
 /// In a run without lookahead: one is worked on, one waits, and four are being filled.
 constexpr int kHeldSets = 6;
-
-int Fail(const std::string& why) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return kMachineFailed;
-}
 
 drivers::SimulationOptions Simulation(int camera_width_px) {
     drivers::SimulationOptions simulation = drivers::FindScenario("straight")->options;
@@ -179,7 +174,7 @@ class Bench {
 
 int BenchVerb(const BenchOptions& options, const std::atomic<bool>& stop) {
     const auto rig = SimulatedRig::Create(Simulation(options.camera_width_px));
-    if (!rig) return Fail(rig.error());
+    if (!rig) return Fail(kMachineFailed, rig.error());
     Bench bench(*rig.value(), options);
     json figures;
     figures["whole_frame"] = bench.WholeFrame();
@@ -191,7 +186,7 @@ int BenchVerb(const BenchOptions& options, const std::atomic<bool>& stop) {
     std::fputs(BenchTable(figures).c_str(), stdout);
     if (options.json.empty()) return 0;
     const std::string refused = WriteJson(figures, options.json);
-    return refused.empty() ? 0 : Fail(refused);
+    return refused.empty() ? 0 : Fail(kMachineFailed, refused);
 }
 
 }  // namespace hitchview::app

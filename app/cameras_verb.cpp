@@ -8,21 +8,13 @@
 #include "app/camera_match.hpp"
 #include "app/camera_probe.hpp"
 #include "app/camera_table.hpp"
+#include "app/exit_code.hpp"
 #include "app/report.hpp"
 
 namespace hitchview::app {
 namespace {
 
 using nlohmann::json;
-
-constexpr int kSomeMissing = 1;
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(const std::string& why, int code) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 int Show(const CamerasOptions& options, const std::optional<RigConfig>& rig) {
     const auto wishes = rig ? WishesOf(*rig) : std::vector<CameraWish>{};
@@ -40,9 +32,9 @@ int Show(const CamerasOptions& options, const std::optional<RigConfig>& rig) {
     std::fputs(text.c_str(), stdout);
     if (!options.json.empty()) {
         const std::string refused = WriteJson(everything, options.json);
-        if (!refused.empty()) return Fail(refused, kMachineFailed);
+        if (!refused.empty()) return Fail(kMachineFailed, refused);
     }
-    return all_there ? 0 : kSomeMissing;
+    return all_there ? kGood : kBad;
 }
 
 }  // namespace
@@ -50,12 +42,11 @@ int Show(const CamerasOptions& options, const std::optional<RigConfig>& rig) {
 int CamerasVerb(const CamerasOptions& options) {
     if (options.rig.empty()) return Show(options, std::nullopt);
     const auto rig = LoadRigConfig(options.rig);
-    if (!rig) return Fail(rig.error(), kWrongUse);
+    if (!rig) return Fail(kWrongUse, rig.error());
     if (WishesOf(rig.value()).empty()) {
-        return Fail(options.rig.string() +
-                        ": no camera is a V4L2 device (source: {v4l2: /dev/...}); "
-                        "`cam --list` shows those of libcamera",
-                    kWrongUse);
+        return Fail(kWrongUse, options.rig.string() +
+                                   ": no camera is a V4L2 device (source: {v4l2: /dev/...}); "
+                                   "`cam --list` shows those of libcamera");
     }
     return Show(options, rig.value());
 }

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/exit_code.hpp"
 #include "app/log_check.hpp"
 #include "app/log_progress.hpp"
 #include "app/log_repair.hpp"
@@ -10,15 +11,6 @@
 
 namespace hitchview::app {
 namespace {
-
-constexpr int kBad = 1;
-constexpr int kUnreadable = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(const std::string& why, int code) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 hal::Checked<LogFigures> Measure(LogRecording& recording) {
     LogCheck check;
@@ -40,9 +32,9 @@ hal::Checked<LogFigures> Measure(LogRecording& recording) {
 int Repair(LogRecording& recording, const CheckOptions& options) {
     std::error_code failed;
     if (std::filesystem::exists(options.repair, failed))
-        return Fail(options.repair.string() + ": exists already", kUnreadable);
+        return Fail(kWrongUse, options.repair.string() + ": exists already");
     const auto repaired = RepairLog(recording, options.repair);
-    if (!repaired) return Fail(repaired.error(), kMachineFailed);
+    if (!repaired) return Fail(kMachineFailed, repaired.error());
     const drivers::LcmLogDamage damage = recording.damage();
     std::fprintf(options.json ? stderr : stdout,
                  "\n%s: %llu events, %llu bytes; left out %llu bytes in %llu places, at least %llu "
@@ -59,10 +51,10 @@ int Repair(LogRecording& recording, const CheckOptions& options) {
 
 int CheckVerb(const CheckOptions& options, const std::atomic<bool>& stop) {
     const auto files = LogFiles(options.logs);
-    if (!files) return Fail(files.error(), kUnreadable);
+    if (!files) return Fail(kWrongUse, files.error());
     LogRecording recording(files.value(), stop);
     const auto figures = Measure(recording);
-    if (!figures) return Fail(figures.error(), kUnreadable);
+    if (!figures) return Fail(kWrongUse, figures.error());
     const LogVerdict verdict = Judge(figures.value());
     const std::string answer = options.json ? LogReport(figures.value(), verdict).dump(2) + '\n'
                                             : LogTable(figures.value(), verdict);

@@ -10,6 +10,7 @@
 #include "app/demo_picture.hpp"
 #include "app/demo_recording.hpp"
 #include "app/demo_table.hpp"
+#include "app/exit_code.hpp"
 #include "app/program.hpp"
 #include "app/report.hpp"
 #include "app/run_loop.hpp"
@@ -20,14 +21,6 @@ namespace hitchview::app {
 namespace {
 
 using drivers::SimulatedRig;
-
-constexpr int kWrongUse = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(const std::string& why, int code = kMachineFailed) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 hal::Checked<std::unique_ptr<SimulatedRig>> MakeDrive(const DemoOptions& options) {
     drivers::SimulationOptions simulation{.speed_mps = 4, .curvature_per_m = 0.12};
@@ -130,9 +123,9 @@ class Demo {
 
 int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop) {
     const auto rig = MakeDrive(options);
-    if (!rig) return Fail(rig.error(), kWrongUse);
+    if (!rig) return Fail(kWrongUse, rig.error());
     const auto recording = RecordDemo(*rig.value(), options.out / "recording", stop);
-    if (!recording) return Fail(recording.error());
+    if (!recording) return Fail(kMachineFailed, recording.error());
     Demo demo(options, *rig.value(), recording.value(), stop);
 
     std::optional<BackgroundProgram> display;
@@ -145,9 +138,9 @@ int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop) {
     unified.write_video = unified.publish = true;
     unified.realtime = options.realtime || !options.headless;
     const auto after = demo.Drive(recording.value().rig(), unified);
-    if (!after) return Fail(after.error());
+    if (!after) return Fail(kMachineFailed, after.error());
     const auto before = demo.Drive(recording.value().plain_rig(), plain);
-    if (!before) return Fail(before.error());
+    if (!before) return Fail(kMachineFailed, before.error());
 
     std::fputs(Table(after.value().summary).c_str(), stdout);
     std::fputs(DemoTable(before.value().truth, after.value().truth).c_str(), stdout);
@@ -155,7 +148,7 @@ int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop) {
     report["truth"] = {{"before", before.value().truth}, {"after", after.value().truth}};
     for (const std::string& refused : {WriteJson(report, options.out / "report.json"),
                                        demo.WriteSheetOf(before.value(), after.value())}) {
-        if (!refused.empty()) return Fail(refused);
+        if (!refused.empty()) return Fail(kMachineFailed, refused);
     }
     std::printf("%s: panorama.avi, before_after.png, report.json\n", options.out.c_str());
     return stop ? 1 : 0;

@@ -1,125 +1,127 @@
-#include <arpa/inet.h>
 #include <net/if.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cstring>
-#include <optional>
+#include <sstream>
 
 #include "app/doctor.hpp"
+#include "app/doctor_route.hpp"
 #include "app/receive_buffer.hpp"
-#include "drivers/lcm_receive_buffer.hpp"
-#include "drivers/lcm_self_test.hpp"
 #include "drivers/lcm_url.hpp"
 
 namespace hitchview::app {
 namespace {
 
 constexpr const char* kInstallSysctl =
-    "install systemd/90-hitchview.conf in /etc/sysctl.d and run: sysctl --system";
+    "install systemd/sysctl/90-hitchview.conf in /etc/sysctl.d and run: sysctl --system";
 /// Of the usual receive buffer that kUsualBufferImageBytes fits.
 constexpr double kUsualBufferBytes = 212'992;
+/// What LCM's group is sent from where a route names no address.
+constexpr const char* kNoAddress = "0.0.0.0";
 
-Diagnosis CheckLargestBuffer(const PublishConfig& publish) {
-    const auto buffers = drivers::ReadSocketBuffers();
+/// Of a receive buffer: the largest panorama that it holds with what the kernel keeps beside it.
+int FittingBytes(int buffer_bytes) {
+    return static_cast<int>(kUsualBufferImageBytes * (buffer_bytes / kUsualBufferBytes));
+}
+
+Diagnosis CheckLargestBuffer(const DoctorSubject& subject) {
+    const auto buffers = subject.machine.socket_buffers();
     if (!buffers) return {.what = "no socket can be opened"};
+    const PublishConfig& publish = subject.rig.config.publish;
     const std::string what = "net.core.rmem_max is " + std::to_string(buffers->largest_bytes) +
                              ", panoramas have up to " + std::to_string(publish.max_bytes) +
                              " bytes";
+    const bool is_shrunk = buffers->largest_bytes < kUsualBufferBytes &&
+                           publish.max_bytes > FittingBytes(buffers->largest_bytes);
     const auto verdict = JudgeReceiveBuffer(publish.max_bytes, buffers->largest_bytes, false);
-    if (verdict.warning.view().empty()) return {Finding::kGood, what};
+    if (verdict.warning.view().empty() && !is_shrunk) return {Finding::kGood, what};
     return {Finding::kBad, what, kInstallSysctl};
 }
 
-Diagnosis CheckUsualBuffer(const PublishConfig& publish) {
-    const auto buffers = drivers::ReadSocketBuffers();
+Diagnosis CheckUsualBuffer(const DoctorSubject& subject) {
+    const auto buffers = subject.machine.socket_buffers();
     if (!buffers) return {.what = "no socket can be opened"};
-    const int fits_bytes =
-        static_cast<int>(kUsualBufferImageBytes * (buffers->usual_bytes / kUsualBufferBytes));
+    const int fits_bytes = FittingBytes(buffers->usual_bytes);
     const std::string what = "net.core.rmem_default is " + std::to_string(buffers->usual_bytes) +
                              ": programs with a plain LCM URL receive up to " +
                              std::to_string(fits_bytes) + " bytes";
-    if (publish.max_bytes <= fits_bytes) return {Finding::kGood, what};
+    if (subject.rig.config.publish.max_bytes <= fits_bytes) return {Finding::kGood, what};
     return {Finding::kBad, what,
             std::string(kInstallSysctl) + ", or append &recv_buf_size=16777216 to their URLs"};
 }
 
-/// Where the kernel sends what goes to LCM's group: the address it would send from, or errno.
-hal::Result<std::string, int> MulticastSource() {
-    const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (probe < 0) return errno;
-    sockaddr_in group{
-        .sin_family = AF_INET, .sin_port = htons(7667), .sin_addr = {}, .sin_zero = {}};
-    inet_pton(AF_INET, "239.255.76.67", &group.sin_addr);
-    sockaddr_in own{};
-    socklen_t size = sizeof own;
-    const bool routed =
-        connect(probe, reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&
-        getsockname(probe, reinterpret_cast<sockaddr*>(&own), &size) == 0;
-    const int error = errno;
-    close(probe);
-    if (!routed) return error;
-    std::array<char, INET_ADDRSTRLEN> text{};
-    inet_ntop(AF_INET, &own.sin_addr, text.data(), text.size());
-    return std::string(text.data());
+/// The interface that /etc/hitchview/network names; empty: none, or there is no such file.
+std::string WantedInterface(const DoctorMachine& machine) {
+    constexpr std::string_view kKey = "interface=";
+    std::istringstream lines(ReadText(machine.At("/etc/hitchview/network")).value_or(""));
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with(kKey)) return line.substr(kKey.size());
+    }
+    return "";
 }
 
-Diagnosis CheckRoute() {
-    const auto source = MulticastSource();
+Diagnosis CheckRoute(const DoctorSubject& subject) {
+    const auto source = subject.machine.multicast_source();
+    const std::string wanted = WantedInterface(subject.machine);
+    const std::string taken = MulticastInterface(subject.machine);
+    if (source && !wanted.empty() && !taken.empty() && wanted != taken) {
+        return {Finding::kBad,
+                "224.0.0.0/4 is routed to " + taken + ", /etc/hitchview/network says " + wanted,
+                "systemctl restart hitchview-lcm-route"};
+    }
     if (source) {
-        const std::string from = source.value() == "0.0.0.0" ? "lo" : source.value();
+        const std::string from = source.value() == kNoAddress ? "lo" : source.value();
         return {Finding::kGood, "224.0.0.0/4 is routed, from " + from};
     }
     return {Finding::kBad,
             std::string("224.0.0.0/4 is not routed: ") + std::strerror(source.error()),
             "for this machine alone: ip route add 224.0.0.0/4 dev lo; for display units: the same "
-            "with the vehicle network's device"};
+            "with the vehicle network's device; as /etc/hitchview/network says: systemctl restart "
+            "hitchview-lcm-route"};
 }
 
-/// Of an interface; empty where it cannot be asked.
-std::optional<short> InterfaceFlags(const char* name) {
-    const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (probe < 0) return std::nullopt;
-    ifreq request{};
-    std::strncpy(request.ifr_name, name, IFNAMSIZ - 1);
-    const bool asked = ioctl(probe, SIOCGIFFLAGS, &request) == 0;
-    close(probe);
-    if (!asked) return std::nullopt;
-    return request.ifr_flags;
-}
-
-Diagnosis CheckLoopback() {
-    const auto flags = InterfaceFlags("lo");
+Diagnosis CheckLoopback(const DoctorSubject& subject) {
+    const auto flags = subject.machine.loopback_flags();
     if (!flags) return {.what = "the interface lo cannot be asked"};
     if ((*flags & IFF_UP) == 0) return {Finding::kBad, "lo is down", "ip link set lo up"};
     if ((*flags & IFF_MULTICAST) != 0) return {Finding::kGood, "lo is up and carries multicast"};
+    const auto source = subject.machine.multicast_source();
+    if (!source)
+        return {.what =
+                    "lo carries no multicast; judged after lcm_multicast_route, whether it must"};
     // A route to lo needs no address.
-    const auto source = MulticastSource();
-    if (source && source.value() != "0.0.0.0" && !source.value().starts_with("127."))
+    if (source.value() != kNoAddress && !source.value().starts_with("127."))
         return {Finding::kGood, "lo carries no multicast, which goes by another interface"};
     return {Finding::kBad, "lo carries no multicast", "ip link set lo multicast on"};
 }
 
-Diagnosis CheckDelivery(const PublishConfig& publish) {
+Diagnosis CheckDelivery(const DoctorSubject& subject) {
+    const PublishConfig& publish = subject.rig.config.publish;
     if (!drivers::IsMulticastUrl(publish.url))
         return {.what = publish.url + " is no multicast network"};
-    const auto sent = drivers::SendToSelf(publish.url, publish.max_bytes);
+    // LCM has much to say about it.
+    if (!subject.machine.multicast_source())
+        return {Finding::kBad, "nothing can be sent", "ip route add 224.0.0.0/4 dev lo"};
+    const auto sent = subject.machine.send_to_self(publish.url, publish.max_bytes);
     const std::string what = std::to_string(publish.max_bytes) + " bytes over " + publish.url;
     if (sent) return {Finding::kGood, what + " came back"};
     return {Finding::kBad, what + ": " + sent.error(),
-            "put the checks before this one right; then look at the firewall: UDP port of the URL"};
+            "look for a firewall that drops the URL's UDP port: nft list ruleset"};
 }
 
 }  // namespace
 
-std::vector<DoctorCheck> LcmChecks(const PublishConfig& publish) {
-    return {{"lcm_receive_buffer", [publish] { return CheckLargestBuffer(publish); }},
-            {"lcm_usual_receive_buffer", [publish] { return CheckUsualBuffer(publish); }},
-            {"lcm_multicast_route", CheckRoute},
-            {"lcm_loopback_multicast", CheckLoopback},
-            {"lcm_delivery", [publish] { return CheckDelivery(publish); }}};
+std::vector<DoctorCheck> LcmChecks(const DoctorCase& subject) {
+    return {{"lcm_receive_buffer", [subject] { return CheckLargestBuffer(*subject); }},
+            {"lcm_usual_receive_buffer",
+             [subject] { return CheckUsualBuffer(*subject); },
+             {"lcm_receive_buffer"}},
+            {"lcm_loopback_multicast", [subject] { return CheckLoopback(*subject); }},
+            {"lcm_multicast_route",
+             [subject] { return CheckRoute(*subject); },
+             {"lcm_loopback_multicast"}},
+            {"lcm_delivery",
+             [subject] { return CheckDelivery(*subject); },
+             {"lcm_receive_buffer", "lcm_loopback_multicast", "lcm_multicast_route"}}};
 }
 
 }  // namespace hitchview::app

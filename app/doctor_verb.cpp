@@ -1,75 +1,82 @@
 #include "app/doctor_verb.hpp"
 
-#include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <utility>
+
+#include "app/doctor_answers.hpp"
+#include "app/exit_code.hpp"
 
 namespace hitchview::app {
 namespace {
 
-constexpr int kNotReady = 1;
-constexpr int kWrongUse = 2;
+using State = DoctorRig::State;
 
-/// Everything that is asked of this machine.
-std::vector<DoctorCheck> AllChecks(const RigConfig& config) {
-    std::vector<DoctorCheck> checks = LcmChecks(config.publish);
-    for (DoctorCheck& check : RealTimeChecks()) checks.push_back(std::move(check));
-    return checks;
+/// Why what a rig file says cannot be asked about; empty: it can.
+std::string WhyNoRig(const DoctorRig& rig) {
+    switch (rig.state) {
+        case State::kAbsent:
+            return "there is no rig file";
+        case State::kBroken:
+            return "after rig_file";
+        case State::kLoaded:
+            break;
+    }
+    return "";
 }
+
+class CheckList {
+ public:
+    explicit CheckList(const DoctorCase& subject)
+        : subject_(subject), why_no_rig_(WhyNoRig(subject->rig)) {}
+
+    using Maker = std::vector<DoctorCheck> (*)(const DoctorCase& subject);
+    void Add(Maker make) {
+        for (DoctorCheck& check : make(subject_)) checks_.push_back(std::move(check));
+    }
+    void AddOfRig(Maker make) {
+        for (DoctorCheck& check : make(subject_)) {
+            if (!why_no_rig_.empty())
+                check.run = [why = why_no_rig_] { return Diagnosis{.what = why}; };
+            checks_.push_back(std::move(check));
+        }
+    }
+    std::vector<DoctorCheck> Take() { return std::move(checks_); }
+
+ private:
+    DoctorCase subject_;
+    std::string why_no_rig_;
+    std::vector<DoctorCheck> checks_{};
+};
 
 }  // namespace
 
-std::vector<DoctorAnswer> RunChecks(const std::vector<DoctorCheck>& checks) {
-    std::vector<DoctorAnswer> answers;
-    for (const DoctorCheck& check : checks) answers.push_back({check.name, check.run()});
-    return answers;
-}
-
-std::string DoctorTable(const std::vector<DoctorAnswer>& answers) {
-    std::size_t widest = 0;
-    for (const DoctorAnswer& answer : answers) widest = std::max(widest, answer.name.size());
-    std::string text;
-    for (const auto& [name, diagnosis] : answers) {
-        std::string verdict = ToString(diagnosis.finding);
-        verdict.resize(9, ' ');
-        text += verdict + name + std::string(widest + 2 - name.size(), ' ') + diagnosis.what + '\n';
-        if (!diagnosis.remedy.empty())
-            text += std::string(11 + widest, ' ') + "-> " + diagnosis.remedy + '\n';
-    }
-    return text;
-}
-
-std::string DoctorJson(const std::vector<DoctorAnswer>& answers) {
-    nlohmann::json checks = nlohmann::json::array();
-    for (const auto& [name, diagnosis] : answers) {
-        checks.push_back({{"check", name},
-                          {"verdict", ToString(diagnosis.finding)},
-                          {"what", diagnosis.what},
-                          {"remedy", diagnosis.remedy}});
-    }
-    return nlohmann::json{{"schema", 1}, {"ready", IsReady(answers)}, {"checks", checks}}.dump(2);
-}
-
-bool IsReady(const std::vector<DoctorAnswer>& answers) {
-    return std::ranges::none_of(answers, [](const DoctorAnswer& answer) {
-        return answer.diagnosis.finding == Finding::kBad;
-    });
+std::vector<DoctorCheck> AllChecks(const DoctorCase& subject) {
+    CheckList list(subject);
+    list.Add(RigFileChecks);
+    list.Add(LcmChecks);
+    list.AddOfRig(CameraChecks);
+    list.AddOfRig(CanChecks);
+    list.AddOfRig(CalibrationChecks);
+    list.AddOfRig(DiskChecks);
+    list.AddOfRig(MemoryChecks);
+    list.Add(ClockChecks);
+    list.Add(PowerChecks);
+    list.Add(RealTimeChecks);
+    list.Add(SlotChecks);
+    list.Add(ServiceChecks);
+    list.AddOfRig(DisplayChecks);
+    return list.Take();
 }
 
 int DoctorVerb(const DoctorOptions& options) {
-    RigConfig config;
-    if (!options.rig.empty()) {
-        auto loaded = LoadRigConfig(options.rig);
-        if (!loaded) {
-            std::fprintf(stderr, "%s\n", loaded.error().c_str());
-            return kWrongUse;
-        }
-        config = std::move(*loaded);
-    }
-    const auto answers = RunChecks(AllChecks(config));
-    std::puts((options.json ? DoctorJson(answers) : DoctorTable(answers)).c_str());
-    return IsReady(answers) ? 0 : kNotReady;
+    const DoctorCase subject = ExamineMachine(ThisMachine(), options.rig);
+    if (!options.rig.empty() && subject->rig.state == State::kBroken)
+        return Fail(kWrongUse, subject->rig.problem);
+    const auto answers = RunChecks(AllChecks(subject));
+    const std::string text = options.json ? DoctorJson(answers) : DoctorTable(answers);
+    if (std::puts(text.c_str()) < 0 || std::fflush(stdout) != 0)
+        return Fail(kMachineFailed, "doctor: the answer cannot be written");
+    return IsReady(answers) ? kGood : kBad;
 }
 
 }  // namespace hitchview::app

@@ -7,24 +7,16 @@
 namespace hitchview::app {
 
 struct DoctorOptions {
-    std::filesystem::path rig{};  ///< whose needs are checked; empty: a rig file's defaults
+    std::filesystem::path rig{};  ///< whose needs are checked; empty: the installed one
     bool json = false;            ///< for scripts, instead of the table
 };
 
-/// A check and what it found.
-struct DoctorAnswer {
-    std::string name;
-    Diagnosis diagnosis;
-};
+/// What is asked about a rig, in its order. Where there is none, or it is broken, the checks that
+/// depend on what is in it say so.
+std::vector<DoctorCheck> AllChecks(const DoctorCase& subject);
 
-std::vector<DoctorAnswer> RunChecks(const std::vector<DoctorCheck>& checks);
-/// One line each, its remedy below it.
-std::string DoctorTable(const std::vector<DoctorAnswer>& answers);
-std::string DoctorJson(const std::vector<DoctorAnswer>& answers);
-/// Whether nothing is bad. What cannot be checked is not bad.
-bool IsReady(const std::vector<DoctorAnswer>& answers);
-
-/// Is this machine ready? Exit code: 0 it is, 1 something is bad, 2 the rig file is.
+/// Is this machine ready? Exit code: 0 it is; 1 something is bad, an installed rig file too; 2 the
+/// rig file that was given is; 3 the answer cannot be written.
 int DoctorVerb(const DoctorOptions& options);
 
 }  // namespace hitchview::app

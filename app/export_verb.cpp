@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/evaluation_statistics.hpp"
+#include "app/exit_code.hpp"
 #include "app/log_export.hpp"
 #include "app/log_progress.hpp"
 #include "app/log_time.hpp"
@@ -12,15 +13,6 @@ namespace hitchview::app {
 namespace {
 
 using drivers::LoggedKind;
-
-constexpr int kNothing = 1;
-constexpr int kUnreadable = 2;
-constexpr int kMachineFailed = 3;
-
-int Fail(const std::string& why, int code) {
-    std::fprintf(stderr, "%s\n", why.c_str());
-    return code;
-}
 
 /// Empty, or the file of the recording that would be overwritten.
 std::filesystem::path Overwritten(const ExportOptions& options,
@@ -70,12 +62,12 @@ int Copy(LogRecording& recording, LogExport& out) {
     auto event = recording.Next();
     for (; event; event = recording.Next()) {
         const auto added = out.Add(event.value(), channels.KindOf(event.value()));
-        if (!added) return Fail(added.error(), kMachineFailed);
+        if (!added) return Fail(kMachineFailed, added.error());
         progress.Show(recording);
     }
     const auto finished = out.Finish();
-    if (!finished) return Fail(finished.error(), kMachineFailed);
-    return event.error() == hal::Error::kEndOfStream ? 0 : Fail(recording.failure(), kUnreadable);
+    if (!finished) return Fail(kMachineFailed, finished.error());
+    return event.error() == hal::Error::kEndOfStream ? 0 : Fail(kWrongUse, recording.failure());
 }
 
 int Tell(const LogRecording& recording, const LogExport& out) {
@@ -84,20 +76,20 @@ int Tell(const LogRecording& recording, const LogExport& out) {
                 static_cast<unsigned long long>(out.written()),
                 static_cast<unsigned long long>(out.damaged()),
                 static_cast<unsigned long long>(skipped));
-    return out.written() == 0 ? Fail("nothing of that kind is in the recording", kNothing) : 0;
+    return out.written() == 0 ? Fail(kBad, "nothing of that kind is in the recording") : 0;
 }
 
 }  // namespace
 
 int ExportVerb(const ExportOptions& options, const std::atomic<bool>& stop) {
     const auto files = LogFiles(options.logs);
-    if (!files) return Fail(files.error(), kUnreadable);
+    if (!files) return Fail(kWrongUse, files.error());
     const std::filesystem::path overwritten = Overwritten(options, files.value());
     if (!overwritten.empty())
-        return Fail(overwritten.string() + ": is the recording itself", kUnreadable);
+        return Fail(kWrongUse, overwritten.string() + ": is the recording itself");
     LogRecording recording(files.value(), stop);
     const auto out = Open(options, recording);
-    if (!out) return Fail(out.error(), kMachineFailed);
+    if (!out) return Fail(kMachineFailed, out.error());
     const int failed = Copy(recording, *out.value());
     return failed != 0 ? failed : Tell(recording, *out.value());
 }

@@ -206,9 +206,13 @@ CLI::App& AddCameras(CLI::App& app, CamerasOptions& options) {
 CLI::App& AddDoctor(CLI::App& app, DoctorOptions& options) {
     CLI::App& verb = *app.add_subcommand("doctor",
                                          "Is this machine ready? Each failure with what puts it "
-                                         "right; exit code 1 if there is one.\n"
-                                         "Example: hitchview doctor --rig /etc/hitchview/rig.yaml");
-    verb.add_option("--rig", options.rig, "rig file whose needs are checked")
+                                         "right; changes nothing. Exit code: 0 it is, 1 it is not, "
+                                         "2 the given rig file is bad, 3 nothing can be told.\n"
+                                         "Example: hitchview doctor\n"
+                                         "Example: hitchview doctor --rig new.yaml --json");
+    verb.add_option("--rig", options.rig,
+                    "rig file whose needs are checked (default: /etc/hitchview/rig.yaml, where "
+                    "there is one)")
         ->check(CLI::ExistingFile);
     verb.add_flag("--json", options.json, "print JSON instead of a table");
     return verb;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,13 @@ int RunProgram(const std::filesystem::path& program, const std::vector<std::stri
 /// Becomes that program: signals to this process are then the program's. Returns only if it could
 /// not be started: 3.
 int BecomeProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+
+/// What a program wrote to its standard output, at most 64 KiB, if it ended by itself with exit
+/// code 0 within `limit`; otherwise empty, and whatever of it still runs is killed. It reads
+/// nothing, and what it complains of is dropped.
+std::optional<std::string> OutputOf(const std::filesystem::path& program,
+                                    const std::vector<std::string>& arguments,
+                                    std::chrono::milliseconds limit);
 
 /// A program that runs beside this one and is asked to end (SIGTERM) with it.
 class BackgroundProgram {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kChannel = "HITCHVIEW_DOCTOR";
 constexpr int kTries = 3;
-constexpr int kPatience_ms = 1000;
+constexpr int kPatience_ms = 500;
 
 void OnMessage(const lcm_recv_buf_t* message, const char* /*channel*/, void* expected_bytes) {
     auto& bytes = *static_cast<std::size_t*>(expected_bytes);

@@ -24,14 +24,17 @@ told() {
 }
 
 cat >"$HITCHVIEW_CAMERAS" <<'FILE'
-# name place
+# name place or device
 
 tractor-front platform-vivid.0-video-index0
+tractor-left  vi-output, ar0234 30-0010
 ../../etc     platform-vivid.1-video-index0
 FILE
-expect "a camera that is named" "$("$scripts/camera-name" platform-vivid.0-video-index0)" tractor-front
-expect "a camera that is not" "$("$scripts/camera-name" platform-vivid.7-video-index0; echo $?)" 1
-expect "a name that is a path" "$("$scripts/camera-name" platform-vivid.1-video-index0 2>/dev/null; echo $?)" 2
+name_of() { "$scripts/camera-name" "$@" 2>/dev/null || echo $?; }
+expect "a camera named by its place" "$(name_of platform-vivid.0-video-index0 vivid)" tractor-front
+expect "a camera named by its device" "$(name_of -video-index0 "vi-output, ar0234 30-0010")" tractor-left
+expect "a camera that is not named" "$(name_of platform-vivid.7-video-index0 vi-output)" 1
+expect "a name that is a path" "$(name_of platform-vivid.1-video-index0 vivid)" 2
 
 cat >"$HITCHVIEW_CAN" <<'FILE'
 # name rate

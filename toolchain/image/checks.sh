@@ -10,7 +10,7 @@ seconds_since() { awk -v from="$1" -v to="$(date +%s.%N)" 'BEGIN { printf "%.2f"
 
 # Boots a new machine with the image unless one runs.
 need_machine() {
-    [[ -n ${machine_process:-} ]] && kill -0 "$machine_process" 2>/dev/null && return
+    [[ -n $machine_process ]] && kill -0 "$machine_process" 2>/dev/null && return
     new_machine "$image" && boot_again 90 && wait_until_up
 }
 
@@ -163,7 +163,6 @@ make_release() {
     mkdir --parents "$machine_work/packages"
     dpkg-deb --raw-extract out/packages/hitchview_*_amd64.deb "$folder"
     sed --in-place "s/^Version: .*/Version: $version/" "$folder/DEBIAN/control"
-    sed --in-place "s/hitchview-slots install [^ ]*/hitchview-slots install $version/" "$folder/DEBIAN/postinst"
     case $kind in
         good) printf '\n' >>"$folder/usr/bin/hitchview" ;;
         crashes) printf '#!/bin/sh\nexit 3\n' >"$folder/usr/bin/hitchview" ;;

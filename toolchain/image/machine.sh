@@ -12,6 +12,7 @@
 
 machine_address=10.77.0.2
 machine_kernel=
+machine_process=
 
 # Files for the image: what the virtual machine needs and a real one does not.
 write_machine_files() {
@@ -75,11 +76,13 @@ wait_for_login() {
 }
 
 cut_power() {
+    [[ -n $machine_process ]] || return 0
     # The kernel is several processes; none of them gets to say anything.
     pkill -KILL --parent "$machine_process" 2>/dev/null || true
     kill -KILL "$machine_process" 2>/dev/null || true
     wait "$machine_process" 2>/dev/null || true
     pkill -KILL --full "umid=machine$$" 2>/dev/null || true
+    machine_process=
 }
 
 boot_again() { start_machine && wait_for_login "$1"; }
