@@ -1,5 +1,6 @@
 #include "drivers/lcm_listener.hpp"
 
+#include <cerrno>
 #include <utility>
 
 namespace hitchview::drivers {
@@ -46,7 +47,9 @@ bool LcmListener::Subscribe(const std::string& pattern, int queue) {
 
 Result<Done> LcmListener::TakeAll() {
     for (int i = 0; i < kMostAtOnce; ++i) {
+        errno = 0;
         const int handled = lcm_handle_timeout(lcm_.get(), 0);
+        if (handled < 0 && errno == EINTR) break;  // by a signal, which may ask to stop
         if (handled < 0) return Error::kFailed;
         if (handled == 0) break;
     }

@@ -1,6 +1,7 @@
 #include "drivers/lcm_subscriber.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <utility>
 
 #include "drivers/lcm_camera_names.hpp"
@@ -65,8 +66,9 @@ bool LcmSubscriber::Subscribe(const std::string& channel, int most_waiting) {
 Result<PanoramaImage> LcmSubscriber::WaitImage(std::chrono::milliseconds timeout) {
     HV_EXPECT(timeout.count() >= 0);
     image_ = Error::kTimeout;
+    errno = 0;
     const int handled = lcm_handle_timeout(lcm_.get(), static_cast<int>(timeout.count()));
-    if (handled < 0) return Error::kFailed;
+    if (handled < 0 && errno != EINTR) return Error::kFailed;
     for (int i = 0; live_ && i < kMostWaiting && lcm_handle_timeout(lcm_.get(), 0) > 0; ++i) {
     }
     return image_;
