@@ -76,7 +76,7 @@ int StartTo(int output, const CommandLine& command) {
 std::string ReadUntil(Moment end, int input) {
     constexpr std::size_t kMostBytes = 64 << 10;
     std::string text;
-    std::array<char, 4096> part;
+    std::array<char, 4096> part{};
     pollfd readable{.fd = input, .events = POLLIN, .revents = 0};
     while (text.size() < kMostBytes && poll(&readable, 1, MillisecondsLeft(end)) > 0) {
         const ssize_t bytes = read(input, part.data(), part.size());
