@@ -35,43 +35,49 @@ double Seconds(Instant duration) {
 
 /// What came since the start.
 struct Tally {
-    int good = 0;
+    int row = 0;      ///< good ones since the newest that was not
+    int longest = 0;  ///< such row
     int damaged = 0;
     int repeated = 0;
     int old = 0;
     int no_camera = 0;
-    double first_since_boot_s = 0;  ///< of the good ones, as are the next
-    Instant first_after{};
-    Instant newest_after{};
+    double first_since_boot_s = 0;  ///< of all the good ones
+    Instant first_after{};          ///< the same
+    Instant row_after{};            ///< the first of the row
+    Instant newest_after{};         ///< of the good ones
 
     void Add(PictureVerdict verdict, Instant after) {
         switch (verdict) {
             case PictureVerdict::kShown:
                 return AddGood(after);
             case PictureVerdict::kRepeated:
-                ++repeated;
-                return;
+                return AddOther(repeated);
             case PictureVerdict::kOld:
-                ++old;
-                return;
+                return AddOther(old);
             case PictureVerdict::kNoCamera:
-                ++no_camera;
-                return;
+                return AddOther(no_camera);
         }
     }
-    /// Empty until two came.
+    void AddDamaged() { AddOther(damaged); }
+    /// In the row; empty until it has two.
     [[nodiscard]] std::optional<double> RateHz() const {
-        if (good < 2) return std::nullopt;
-        return (good - 1) / Seconds(std::max(newest_after - first_after, Instant(1)));
+        if (row < 2) return std::nullopt;
+        return (row - 1) / Seconds(std::max(newest_after - row_after, Instant(1)));
     }
 
  private:
     void AddGood(Instant after) {
-        if (good++ == 0) {
+        if (longest == 0) {
             first_after = after;
             first_since_boot_s = SecondsSinceBoot();
         }
+        if (row++ == 0) row_after = after;
         newest_after = after;
+        longest = std::max(longest, row);
+    }
+    void AddOther(int& count) {
+        ++count;
+        row = 0;
     }
 };
 
@@ -82,10 +88,10 @@ std::string Text(const char* format, double number) {
 }
 
 std::string Sentence(const Tally& tally, const AwaitOptions& options) {
-    std::string text = std::to_string(tally.good) + " good panoramas of " +
+    std::string text = std::to_string(tally.longest) + " good panoramas in a row of " +
                        std::to_string(options.panoramas) + " within " +
                        Text("%g s", options.within_s);
-    if (tally.good > 0) {
+    if (tally.longest > 0) {
         text += "; the first after " + Text("%.2f s", Seconds(tally.first_after)) + ", " +
                 Text("%.2f s since boot", tally.first_since_boot_s);
     }
@@ -100,17 +106,12 @@ std::string Sentence(const Tally& tally, const AwaitOptions& options) {
 }
 
 nlohmann::json Json(const Tally& tally, const AwaitOptions& options) {
-    nlohmann::json json{{"good", tally.good},
-                        {"wanted", options.panoramas},
-                        {"within_s", options.within_s},
-                        {"damaged", tally.damaged},
-                        {"not_numbered_on", tally.repeated},
-                        {"old", tally.old},
-                        {"no_camera", tally.no_camera},
-                        {"first_after_s", nullptr},
-                        {"first_since_boot_s", nullptr},
-                        {"rate_hz", nullptr}};
-    if (tally.good > 0) {
+    nlohmann::json json{{"good_in_a_row", tally.longest},    {"wanted", options.panoramas},
+                        {"within_s", options.within_s},      {"damaged", tally.damaged},
+                        {"not_numbered_on", tally.repeated}, {"old", tally.old},
+                        {"no_camera", tally.no_camera},      {"first_after_s", nullptr},
+                        {"first_since_boot_s", nullptr},     {"rate_hz", nullptr}};
+    if (tally.longest > 0) {
         json["first_after_s"] = Seconds(tally.first_after);
         json["first_since_boot_s"] = tally.first_since_boot_s;
     }
@@ -159,7 +160,7 @@ std::optional<Tally> Count(const AwaitOptions& options, const Source& source,
     Tally tally;
     const Instant start = Now();
     const Instant end = start + Instant(static_cast<Instant::rep>(1e9 * options.within_s));
-    while (!stop && tally.good < options.panoramas && Now() < end) {
+    while (!stop && tally.row < options.panoramas && Now() < end) {
         const auto image = subscriber.WaitImage(kPoll);
         const Instant now = Now();
         if (image)
@@ -168,7 +169,7 @@ std::optional<Tally> Count(const AwaitOptions& options, const Source& source,
         else if (image.error() == hal::Error::kFailed)
             return std::nullopt;
         else if (image.error() != hal::Error::kTimeout)
-            ++tally.damaged;
+            tally.AddDamaged();
     }
     return tally;
 }
@@ -188,7 +189,7 @@ int AwaitVerb(const AwaitOptions& options, const std::atomic<bool>& stop) {
     const auto tally = Count(options, source.value(), *subscriber.value(), stop);
     if (!tally) return Fail(kMachineFailed, "LCM stopped receiving");
     Print(*tally, options);
-    return tally->good >= options.panoramas ? kGood : kBad;
+    return tally->longest >= options.panoramas ? kGood : kBad;
 }
 
 }  // namespace hitchview::app

@@ -15,7 +15,7 @@ struct AwaitOptions {
     std::filesystem::path rig{};  ///< empty: the network and channels of a rig file without keys
     std::string url{};
     std::string channel{};
-    int panoramas = 1;    ///< that are to come
+    int panoramas = 1;    ///< that are to come in a row
     double within_s = 0;  ///< of the start
     bool json = false;
 };

@@ -14,8 +14,8 @@ namespace hitchview::app {
 
 /// Carries one live camera's frames to the inbox on a thread of its own, named `cam-<name>`, and
 /// has the camera reopened when it is gone, with pauses from kFirstPause that double up to
-/// kLongestPause until it gives a frame. Says on stderr and as an event when a camera goes, and
-/// when it gives frames again. All references must outlive it. Takes no memory after construction.
+/// kLongestPause until it gives a frame. Says as an event, and on stderr unless events get there
+/// anyway, when a camera goes, and when it gives frames again. All references must outlive it. Takes no memory after construction.
 class CaptureThread {
  public:
     static constexpr std::chrono::milliseconds kFirstPause{100};

@@ -1,24 +1,17 @@
 #include "app/doctor_answers.hpp"
 
 #include <algorithm>
-#include <future>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <thread>
 #include <utility>
+
+#include "app/doctor_patience.hpp"
 
 namespace hitchview::app {
 namespace {
 
-/// What the check finds. One that hangs in a driver is left behind: its thread ends with the
-/// process.
 Diagnosis Ask(const DoctorCheck& check, std::chrono::milliseconds patience) {
-    std::promise<Diagnosis> promise;
-    std::future<Diagnosis> answer = promise.get_future();
-    std::thread([run = check.run, promise = std::move(promise)]() mutable {
-        promise.set_value(run());
-    }).detach();
-    if (answer.wait_for(patience) == std::future_status::ready) return answer.get();
+    if (auto diagnosis = Within(patience, check.run)) return *std::move(diagnosis);
     return {Finding::kBad, "no answer within " + std::to_string(patience.count()) + " ms",
             "see what the kernel says: dmesg"};
 }

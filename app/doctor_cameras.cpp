@@ -12,27 +12,29 @@ namespace {
 
 constexpr std::chrono::milliseconds kPatience{1800};
 
-/// What the devices say, asked once for all checks. A driver that hangs is left behind.
+bool HasDevices(const DoctorSubject& subject) {
+    return !WishesOf(subject.rig.config).empty();
+}
+
+/// What the devices say, asked once for all checks, from the beginning on. A driver that hangs is
+/// left behind.
 class ProbedCameras {
  public:
-    explicit ProbedCameras(DoctorCase subject) : subject_(std::move(subject)) {}
-
-    /// Waits for the answer where `wait` says so. Null: there is none.
-    const std::vector<CameraDevice>* Devices(std::chrono::milliseconds wait) {
-        if (!answer_.valid()) Ask();
-        return answer_.wait_for(wait) == std::future_status::ready ? &answer_.get() : nullptr;
-    }
-
- private:
-    void Ask() {
+    explicit ProbedCameras(const DoctorCase& subject) {
+        if (!HasDevices(*subject)) return;
         std::promise<std::vector<CameraDevice>> promise;
         answer_ = promise.get_future().share();
-        std::thread([subject = subject_, promise = std::move(promise)]() mutable {
+        std::thread([subject, promise = std::move(promise)]() mutable {
             promise.set_value(subject->machine.cameras(WishesOf(subject->rig.config)));
         }).detach();
     }
 
-    DoctorCase subject_;
+    /// Null: there is no answer within `wait`. Only of a rig that has devices.
+    [[nodiscard]] const std::vector<CameraDevice>* Devices(std::chrono::milliseconds wait) const {
+        return answer_.wait_for(wait) == std::future_status::ready ? &answer_.get() : nullptr;
+    }
+
+ private:
     std::shared_future<std::vector<CameraDevice>> answer_{};
 };
 
@@ -52,10 +54,6 @@ class CameraList {
 
 Diagnosis NoDevices() {
     return {.what = "no camera of the rig is a V4L2 device"};
-}
-
-bool HasDevices(const DoctorSubject& subject) {
-    return !WishesOf(subject.rig.config).empty();
 }
 
 const CameraDevice* Find(const std::vector<CameraDevice>& devices, const std::string& path) {
@@ -93,7 +91,7 @@ bool IsMissing(const std::vector<CameraMatch>& matches, const CameraMatch& match
     return &*first != &match;
 }
 
-Diagnosis CheckDevices(const DoctorSubject& subject, ProbedCameras& probed) {
+Diagnosis CheckDevices(const DoctorSubject& subject, const ProbedCameras& probed) {
     if (!HasDevices(subject)) return NoDevices();
     const auto* const devices = probed.Devices(kPatience);
     if (devices == nullptr) {
@@ -119,7 +117,7 @@ std::string AccessRemedy(const DoctorSubject& subject) {
            "; then systemctl restart hitchview";
 }
 
-Diagnosis CheckAccess(const DoctorSubject& subject, ProbedCameras& probed) {
+Diagnosis CheckAccess(const DoctorSubject& subject, const ProbedCameras& probed) {
     if (!HasDevices(subject)) return NoDevices();
     const auto* const devices = probed.Devices({});
     if (devices == nullptr) return {.what = "after camera_devices"};
@@ -139,7 +137,7 @@ Diagnosis CheckAccess(const DoctorSubject& subject, ProbedCameras& probed) {
     return {Finding::kBad, who + " may not open " + refused.text(), AccessRemedy(subject)};
 }
 
-Diagnosis CheckFormats(const DoctorSubject& subject, ProbedCameras& probed) {
+Diagnosis CheckFormats(const DoctorSubject& subject, const ProbedCameras& probed) {
     if (!HasDevices(subject)) return NoDevices();
     const auto* const devices = probed.Devices({});
     if (devices == nullptr) return {.what = "after camera_devices"};
@@ -171,7 +169,7 @@ Diagnosis CheckFormats(const DoctorSubject& subject, ProbedCameras& probed) {
 }  // namespace
 
 std::vector<DoctorCheck> CameraChecks(const DoctorCase& subject) {
-    const auto probed = std::make_shared<ProbedCameras>(subject);
+    const auto probed = std::make_shared<const ProbedCameras>(subject);
     return {{"camera_devices", [=] { return CheckDevices(*subject, *probed); }},
             {"camera_access", [=] { return CheckAccess(*subject, *probed); }},
             {"camera_formats", [=] { return CheckFormats(*subject, *probed); }}};

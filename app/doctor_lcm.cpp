@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "app/doctor.hpp"
+#include "app/doctor_patience.hpp"
 #include "app/doctor_route.hpp"
 #include "app/receive_buffer.hpp"
 #include "drivers/lcm_url.hpp"
@@ -15,6 +16,7 @@ constexpr const char* kInstallSysctl =
     "install systemd/sysctl/90-hitchview.conf in /etc/sysctl.d and run: sysctl --system";
 /// Of the usual receive buffer that kUsualBufferImageBytes fits.
 constexpr double kUsualBufferBytes = 212'992;
+constexpr std::chrono::milliseconds kPatience{1800};
 /// What LCM's group is sent from where a route names no address.
 constexpr const char* kNoAddress = "0.0.0.0";
 
@@ -101,10 +103,13 @@ Diagnosis CheckDelivery(const DoctorSubject& subject) {
     // LCM has much to say about it.
     if (!subject.machine.multicast_source())
         return {Finding::kBad, "nothing can be sent", "ip route add 224.0.0.0/4 dev lo"};
-    const auto sent = subject.machine.send_to_self(publish.url, publish.max_bytes);
+    // LCM looks for itself before it starts, and goes on looking where nothing gets through.
+    const auto sent = Within(kPatience, [send = subject.machine.send_to_self, publish] {
+        return send(publish.url, publish.max_bytes);
+    });
     const std::string what = std::to_string(publish.max_bytes) + " bytes over " + publish.url;
-    if (sent) return {Finding::kGood, what + " came back"};
-    return {Finding::kBad, what + ": " + sent.error(),
+    if (sent && sent->ok()) return {Finding::kGood, what + " came back"};
+    return {Finding::kBad, what + ": " + (sent ? sent->error() : "nothing came back"),
             "look for a firewall that drops the URL's UDP port: nft list ruleset"};
 }
 

@@ -13,28 +13,35 @@ namespace {
 
 constexpr std::size_t kMostLetters = sizeof(sockaddr_un::sun_path) - 1;
 
+bool IsAbstract(std::string_view address) {
+    return address.starts_with('@');
+}
+
+/// A path has a NUL at its end.
+socklen_t AddressBytes(std::string_view address) {
+    const std::size_t letters = address.size() + (IsAbstract(address) ? 0 : 1);
+    return static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + letters);
+}
+
 }  // namespace
 
 hal::Checked<SystemdSocket> SystemdSocket::Open(std::string_view address) {
-    const bool named = address.starts_with('/') || address.starts_with('@');
+    const bool named = address.starts_with('/') || IsAbstract(address);
     if (!named || address.size() < 2 || address.size() > kMostLetters) {
         return std::string(address) +
                ", must be a path that starts with / or a name that starts with @, of 2 to " +
                std::to_string(kMostLetters) + " letters";
     }
     const int file = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (file < 0) return std::string("no local socket: ") + std::strerror(errno);
+    if (file < 0) return std::string(address) + ": no socket: " + std::strerror(errno);
     return SystemdSocket(file, address);
 }
 
-SystemdSocket::SystemdSocket(int file, std::string_view address) : file_(file) {
+SystemdSocket::SystemdSocket(int file, std::string_view address)
+    : file_(file), address_bytes_(AddressBytes(address)) {
     address_.sun_family = AF_UNIX;
     std::ranges::copy(address, address_.sun_path);
-    address_bytes_ = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + address.size());
-    if (address.starts_with('@'))
-        address_.sun_path[0] = '\0';
-    else
-        ++address_bytes_;  // a path has a NUL at its end
+    if (IsAbstract(address)) address_.sun_path[0] = '\0';
 }
 
 SystemdSocket::SystemdSocket(SystemdSocket&& other) noexcept

@@ -67,8 +67,8 @@ class Camera {
         return DoWaitFrame(timeout);
     }
 
-    /// After kDisconnected: tries once to have the device again, in the same format and without
-    /// taking memory from the heap. Frames that are lent stay valid. kNotFound: it is not there;
+    /// After kDisconnected: tries once to have the device again, or for the first time if it was not
+    /// there when the program started, in the same format and without taking memory from the heap. Frames that are lent stay valid. kNotFound: it is not there;
     /// kUnsupported: it came back as another device, or this camera cannot be reopened; kFailed:
     /// see the log. Try again later.
     Result<Done> Reopen() { return DoReopen(); }

@@ -3,7 +3,7 @@
 include(GNUInstallDirs)
 
 install(TARGETS hitchview hitchview-web RUNTIME COMPONENT hitchview)
-install(TARGETS hitchview-view hitchview-eval hitchview-calib RUNTIME COMPONENT tools)
+install(TARGETS hitchview-desk hitchview-view hitchview-eval hitchview-calib RUNTIME COMPONENT tools)
 
 set(services ${PROJECT_SOURCE_DIR}/systemd)
 install(DIRECTORY ${services}/system/ DESTINATION /lib/systemd/system COMPONENT hitchview)
@@ -20,7 +20,7 @@ set(completions ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 foreach(program hitchview hitchview-web)
     install(FILES ${PROJECT_SOURCE_DIR}/toolchain/completion DESTINATION ${completions} RENAME ${program} COMPONENT hitchview)
 endforeach()
-foreach(program hitchview-view hitchview-eval hitchview-calib)
+foreach(program hitchview-desk hitchview-view hitchview-eval hitchview-calib)
     install(FILES ${PROJECT_SOURCE_DIR}/toolchain/completion DESTINATION ${completions} RENAME ${program} COMPONENT tools)
 endforeach()
 

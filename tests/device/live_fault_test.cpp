@@ -242,6 +242,38 @@ TEST_F(LiveFaultTest, WhatBefallsACameraStandsInTheJournalToo) {
     EXPECT_TRUE(entries[1].starts_with(message + "back after ")) << entries[1];
 }
 
+TEST_F(LiveFaultTest, WithoutAnyCameraPanoramasOfNoDataAreMadeAndTheServiceManagerIsFed) {
+    constexpr milliseconds kGone{2000};
+    constexpr int kExpectedFeeds = 60;
+    tests::DatagramListener manager("@hitchview-live-fault-test");
+    setenv("NOTIFY_SOCKET", "@hitchview-live-fault-test", 1);
+    ASSERT_NO_FATAL_FAILURE(Start());
+    unsetenv("NOTIFY_SOCKET");
+    std::vector<int> held;  // a device that was disconnected comes back when nobody has it open
+    for (std::size_t i = 0; i < LiveProgram::kCameras; ++i) {
+        held.push_back(open(tests::VividCamera(static_cast<int>(i)).path.c_str(), O_RDWR));
+        EXPECT_TRUE(Vivid::Set(static_cast<int>(i), "disconnect", 1));
+    }
+    Pass(milliseconds(500));
+    EXPECT_EQ(program_->statuses().back().cameras_missing, 0xFFU);
+    manager.TakeAll();  // from before
+    const std::size_t before = program_->statuses().size();
+    int feeds = 0;
+    const Instant end = PanoramaListener::Now() + kGone;
+    while (PanoramaListener::Now() < end)
+        if (manager.Take(milliseconds(10)) == "WATCHDOG=1") ++feeds;
+    std::printf("no camera for 2 s: %zu panoramas, fed %d times\n",
+                program_->statuses().size() - before, feeds);
+    EXPECT_EQ(program_->statuses().back().cameras_missing, 0xFFU);
+    EXPECT_GT(program_->statuses().size() - before, kExpectedFeeds / 2);
+    EXPECT_GT(feeds, kExpectedFeeds / 2);
+    for (const int file : held) close(file);
+    Pass(kLongestReturn + milliseconds(1000));
+    EXPECT_EQ(program_->statuses().back().cameras_missing, 0U);
+    report_ = program_->Finish();
+    EXPECT_EQ(report_.at("heap_calls_after_ready"), 0) << report_.at("heap_calls_by_thread");
+}
+
 TEST_F(LiveFaultTest, ACameraThatFailsAndDoesNotStreamAtOnceIsTriedAgain) {
     ASSERT_NO_FATAL_FAILURE(Start());
     Set("inject_vidioc_streamon_error", 1);

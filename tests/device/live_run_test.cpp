@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "app/program.hpp"
 #include "tests/device/live_report.hpp"
@@ -31,16 +34,21 @@ class LiveRunTest : public testing::Test {
         tests::WriteSimulatedCalibration(folder_, 1280, 720);
     }
 
-    std::string Rig() {
+    /// Camera i has the path of the device i, but for `absent`: that leads nowhere yet.
+    std::string Rig(int absent = -1) {
         int device = 0;
-        return folder_.Write("rig.yaml",
-                             "schema: 1\ncanvas: {projection: cylinder}\n"
-                             "calibration: rig.calib.yaml\n" +
-                                 tests::SimulatedUnits([&](const std::string&) {
-                                     return "{v4l2: /dev/video" + std::to_string(device++) +
-                                            ", format: uyvy}";
-                                 }));
+        return folder_.Write(
+            "rig.yaml",
+            "schema: 1\ncanvas: {projection: cylinder}\n"
+            "calibration: rig.calib.yaml\n" +
+                tests::SimulatedUnits([&](const std::string&) {
+                    const int number = device++;
+                    return "{v4l2: " + (number == absent ? AbsentPath() : Device(number)) +
+                           ", format: uyvy}";
+                }));
     }
+    static std::string Device(int number) { return "/dev/video" + std::to_string(number); }
+    [[nodiscard]] std::string AbsentPath() const { return folder_ / "absent"; }
     json Report(int frames) {
         EXPECT_EQ(RunProgram(HITCHVIEW, {"run", "--rig", Rig(), "--out", folder_ / "out",
                                          "--frames", std::to_string(frames)}),
@@ -98,6 +106,26 @@ TEST_F(LiveRunTest, EveryFrameIsRecordedOrCounted) {
     EXPECT_GT(recorded, 0);
     EXPECT_EQ(channels["RIG"], 1);
     EXPECT_GT(channels["PANORAMA_STATUS"], 0);
+}
+
+TEST_F(LiveRunTest, ACameraThatComesWhileItRecordsIsRecordedFromThenOn) {
+    const std::string drives = folder_ / "drives";
+    std::thread appearing([&] {
+        std::this_thread::sleep_for(std::chrono::seconds(4));
+        std::filesystem::create_symlink(Device(3), AbsentPath());
+    });
+    EXPECT_EQ(RunProgram(HITCHVIEW, {"record", "--rig", Rig(3), "--out", drives, "--seconds", "6",
+                                     "--min-free-mb", "0"}),
+              0);
+    appearing.join();
+    const json report = json::parse(tests::FileText(folder_ / "drives/report.json"));
+    std::printf("%s\n", report.at("recording").dump().c_str());
+    EXPECT_EQ(report.at("heap_calls_after_ready"), 0) << report.at("heap_calls_by_thread");
+    const json& recorded = report.at("recording").at("cameras");
+    for (const auto& [name, camera] : report.at("live").at("cameras").items()) {
+        EXPECT_EQ(Count(camera, "reopened"), name == "left" ? 1U : 0U) << name;
+        EXPECT_GT(Count(recorded.at(name), "recorded"), 0U) << name;
+    }
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
-// Stops one thread of another process until this program ends: how a pipeline that hangs looks from outside.
+// Stops one thread of another process until it is killed: how a pipeline that hangs looks from outside.
 //
 //   stop_thread TID
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/ptrace.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 int main(int argc, char** argv) {
@@ -13,6 +14,9 @@ int main(int argc, char** argv) {
         perror("stop_thread");
         return 1;
     }
-    pause();
+    // A traced thread that is killed is gone only once its tracer has taken note.
+    int status = 0;
+    while (waitpid(thread, &status, __WALL) == thread && !WIFEXITED(status) && !WIFSIGNALED(status)) {
+    }
     return 0;
 }

@@ -27,6 +27,7 @@ class Sender {
         std::uint32_t step = 1;          ///< of the numbers
         milliseconds standstill_at{-1};  ///< of the cameras, after the start; below 0: never
         bool names_cameras = false;      ///< two
+        std::uint32_t again_after = 0;   ///< so many, numbered from 0 again; 0: never
         const char* channel = "PANORAMA";
     };
     explicit Sender(const Options& options) : options_(options) {
@@ -55,6 +56,7 @@ class Sender {
                                  .cameras_missing = options_.cameras_missing,
                                  .jpeg = jpeg};
         for (; !stop_; image.sequence += options_.step) {
+            if (options_.again_after > 0) image.sequence %= options_.again_after;
             const hal::Instant now = clock_.Now();
             const bool stands =
                 options_.standstill_at >= milliseconds(0) && now - start > options_.standstill_at;
@@ -92,9 +94,10 @@ TEST(LcmAwaitTest, EndsWithTheLastPanoramaThatIsWanted) {
     const Sender sender({});
     const Answer answer = Await("--panoramas 50 --within 60");
     EXPECT_EQ(answer.code, 0);
-    EXPECT_THAT(answer.text,
-                MatchesRegex("50 good panoramas of 50 within 60 s; the first after [0-9.]+ s, "
-                             "[0-9.]+ s since boot; [0-9.]+ per second\n"));
+    EXPECT_THAT(
+        answer.text,
+        MatchesRegex("50 good panoramas in a row of 50 within 60 s; the first after [0-9.]+ s, "
+                     "[0-9.]+ s since boot; [0-9.]+ per second\n"));
 }
 
 TEST(LcmAwaitTest, TellsTheSameAsJson) {
@@ -102,7 +105,7 @@ TEST(LcmAwaitTest, TellsTheSameAsJson) {
     const Answer answer = Await("--panoramas 50 --within 60 --json");
     EXPECT_EQ(answer.code, 0);
     const auto json = nlohmann::json::parse(answer.text);
-    EXPECT_EQ(json.at("good"), 50);
+    EXPECT_EQ(json.at("good_in_a_row"), 50);
     EXPECT_EQ(json.at("wanted"), 50);
     EXPECT_GT(json.at("first_after_s"), 0);
     EXPECT_LT(json.at("first_after_s"), 60);
@@ -114,7 +117,7 @@ TEST(LcmAwaitTest, TellsTheSameAsJson) {
 TEST(LcmAwaitTest, WithoutASenderNoneCome) {
     const Answer answer = Await("--panoramas 1 --within 0.5");
     EXPECT_EQ(answer.code, 1);
-    EXPECT_EQ(answer.text, "0 good panoramas of 1 within 0.5 s\n");
+    EXPECT_EQ(answer.text, "0 good panoramas in a row of 1 within 0.5 s\n");
 }
 
 TEST(LcmAwaitTest, PicturesThatStandStillAreNotTakenForLiveOnes) {
@@ -129,8 +132,20 @@ TEST(LcmAwaitTest, APictureSentAgainAndAgainIsOnePicture) {
     const Answer answer = Await("--panoramas 2 --within 1 --json");
     EXPECT_EQ(answer.code, 1);
     const auto json = nlohmann::json::parse(answer.text);
-    EXPECT_EQ(json.at("good"), 1);
+    EXPECT_EQ(json.at("good_in_a_row"), 1);
     EXPECT_GT(json.at("not_numbered_on"), 0);
+}
+
+/// As of a program that is started again and again.
+TEST(LcmAwaitTest, PanoramasThatBeginAnewAreNoRow) {
+    const Sender sender({.again_after = 20});
+    const Answer answer = Await("--panoramas 30 --within 3 --json");
+    EXPECT_EQ(answer.code, 1);
+    const auto json = nlohmann::json::parse(answer.text);
+    EXPECT_GT(json.at("good_in_a_row"), 5);
+    EXPECT_LE(json.at("good_in_a_row"), 20);
+    EXPECT_GT(json.at("not_numbered_on"), 1);
+    EXPECT_EQ(Await("--panoramas 15 --within 60").code, 0);
 }
 
 TEST(LcmAwaitTest, PanoramasWithoutAnyCameraAreNotGood) {
@@ -157,7 +172,7 @@ TEST(LcmAwaitTest, TheRigFileNamesChannelAndCameras) {
     EXPECT_EQ(none.code, 1);
     EXPECT_THAT(none.text, HasSubstr("without a camera's picture")) << "it has one camera";
     EXPECT_EQ(Await("--rig " + rig + " --channel PANORAMA --panoramas 1 --within 0.5").text,
-              "0 good panoramas of 1 within 0.5 s\n");
+              "0 good panoramas in a row of 1 within 0.5 s\n");
 }
 
 TEST(LcmAwaitTest, WrongUseIsTold) {

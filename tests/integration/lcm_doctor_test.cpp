@@ -1,10 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "app/doctor_answers.hpp"
+#include "app/doctor_verb.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 // What the doctor says of networks that are made ill and healed again. Runs in a network namespace
 // of its own (tests/support/lcm_namespace.sh).
@@ -12,6 +16,7 @@ namespace hitchview::app {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 std::map<std::string, Diagnosis> AskOf(const PublishConfig& publish) {
@@ -66,6 +71,48 @@ TEST(LcmDoctorTest, ABudgetThatTheUsualBufferCannotHoldIsFound) {
 TEST(LcmDoctorTest, WhatIsNoNetworkIsNotJudged) {
     auto diagnoses = AskOf({.url = "file:///tmp/nowhere.lcm?mode=w"});
     EXPECT_EQ(diagnoses["lcm_delivery"].finding, Finding::kUnknown);
+}
+
+TEST(DoctorVerbTest, OnThisMachineNothingTakesLongAndWhatIsBadHasARemedy) {
+    const auto start = std::chrono::steady_clock::now();
+    for (const auto& [name, diagnosis] : RunChecks(AllChecks(ExamineMachine(ThisMachine(), "")))) {
+        EXPECT_NE(diagnosis.what, "") << name;
+        EXPECT_EQ(diagnosis.remedy.empty(), diagnosis.finding != Finding::kBad) << name;
+        EXPECT_THAT(diagnosis.what, Not(HasSubstr("no answer within"))) << name;
+    }
+    EXPECT_THAT(std::chrono::steady_clock::now() - start, testing::Lt(std::chrono::seconds(20)));
+}
+
+TEST(DoctorVerbTest, ARigFileThatIsGivenAndWrongIsWrongUse) {
+    tests::TemporaryFolder folder;
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(DoctorVerb({.rig = folder.Write("rig.yaml", "schema: 2\n")}), 2);
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("rig.yaml:1: schema is 2"));
+}
+
+TEST(DoctorVerbTest, ARigWithoutItsCameraIsBadAndJsonSaysWhich) {
+    tests::TemporaryFolder folder;
+    const std::string rig = folder.Write(
+        "rig.yaml",
+        "schema: 1\ncanvas: {projection: plane, size_px: [640, 360]}\nunits: {tractor: {cameras: "
+        "[{name: left, source: {v4l2: /dev/hitchview/nothing}}]}}\n");
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(DoctorVerb({.rig = rig, .json = true}), 1);
+    const auto json = nlohmann::json::parse(testing::internal::GetCapturedStdout());
+    EXPECT_EQ(json["ready"], false);
+    for (const auto& check : json["checks"]) {
+        if (check["check"] == "camera_devices") {
+            EXPECT_EQ(check["verdict"], "bad");
+        }
+    }
+}
+
+TEST(DoctorVerbTest, AnAnswerThatCannotBeWrittenIsAFailureOfTheMachine) {
+    const auto ask = [] {
+        if (std::freopen("/dev/full", "w", stdout) == nullptr) std::exit(99);
+        std::exit(DoctorVerb({}));
+    };
+    EXPECT_EXIT(ask(), testing::ExitedWithCode(3), "the answer cannot be written");
 }
 
 }  // namespace

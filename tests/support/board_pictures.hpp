@@ -41,11 +41,13 @@ class BoardPictures {
  private:
     Eigen::Isometry3d AnyPlace() {
         std::uniform_real_distribution<double> any(-1, 1);
-        const Eigen::Vector2d pixel(lens_.width_px * (0.5 + 0.47 * any(random_)),
-                                    lens_.height_px * (0.5 + 0.47 * any(random_)));
+        const double y_px = lens_.height_px * (0.5 + 0.47 * any(random_));
+        const double x_px = lens_.width_px * (0.5 + 0.47 * any(random_));
         const double distance_m = width_m_ * (1.3 + 0.5 * any(random_));
-        return Held(lens_, board_, pixel, distance_m, 0.9 * any(random_), 3 * any(random_),
-                    0.2 * any(random_));
+        const double turn_rad = 0.2 * any(random_);
+        const double axis_rad = 3 * any(random_);
+        const double tilt_rad = 0.9 * any(random_);
+        return Held(lens_, board_, {x_px, y_px}, distance_m, tilt_rad, axis_rad, turn_rad);
     }
 
     /// Of the corners, those in the picture.

@@ -78,7 +78,7 @@ class HealthyMachine {
                     if (name != "video") return std::nullopt;
                     return getegid();
                 },
-                .cameras = [this](const auto&) { return cameras; },
+                .cameras = [devices = cameras](const auto&) { return devices; },
                 .can_link = [this](const auto& name) { return CanLink(name); },
                 .socket_buffers = [this] { return buffers; },
                 .multicast_source = [this] { return multicast_source; },

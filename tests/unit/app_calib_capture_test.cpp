@@ -47,7 +47,9 @@ class CaptureTest : public testing::Test {
         std::uniform_real_distribution<double> u(0, 1);
         for (int i = 0; i < pictures; ++i) {
             const double distance_m = 0.25 + 0.75 * u(random);
-            const Eigen::Vector2d at(480 * u(random), 300 * u(random));
+            const double y_px = 300 * u(random);
+            const double x_px = 480 * u(random);
+            const Eigen::Vector2d at(x_px, y_px);
             const double tilt_rad = 1.4 * (u(random) - 0.5);
             Save(i, scene.Render(Eigen::Isometry3d::Identity(),
                                  std::vector<tests::PlacedBoard>{

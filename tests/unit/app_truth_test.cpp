@@ -65,7 +65,9 @@ std::vector<FieldSample> SamplesOf(const algo::Mesh& mesh, const algo::VertexFie
     std::uniform_real_distribution<double> y(0, 359);
     std::vector<FieldSample> samples;
     for (int i = 0; i < 6000; ++i) {
-        const Vector2d pixel(x(random), y(random));
+        const double y_px = y(random);
+        const double x_px = x(random);
+        const Vector2d pixel(x_px, y_px);
         samples.push_back({pixel, algo::Sample(mesh, field, pixel)});
     }
     return samples;

@@ -43,7 +43,9 @@ class FarConsensusTest : public testing::Test {
     }
     FarMatch Wrong() {
         FarMatch match = True();
-        match.second_px += 60 * Eigen::Vector2d(any_(random_), any_(random_));
+        const double y = any_(random_);
+        const double x = any_(random_);
+        match.second_px += 60 * Eigen::Vector2d(x, y);
         return match;
     }
 
@@ -51,7 +53,9 @@ class FarConsensusTest : public testing::Test {
         const auto at = cameras_[camera].model.Project(truth_[camera].inverse() * p_unit);
         if (!at || at->x() < 0 || at->y() < 0 || at->x() > 1279 || at->y() > 719)
             return std::nullopt;
-        return *at + 0.3 * Eigen::Vector2d(noise_(random_), noise_(random_));
+        const double noise_y = noise_(random_);
+        const double noise_x = noise_(random_);
+        return *at + 0.3 * Eigen::Vector2d(noise_x, noise_y);
     }
 
     std::vector<UnitCamera> cameras_;

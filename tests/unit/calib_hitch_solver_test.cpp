@@ -87,7 +87,9 @@ class HitchYard {
             if (!at || at->x() < 0 || at->y() < 0 || at->x() > lens.width_px - 1 ||
                 at->y() > lens.height_px - 1)
                 continue;
-            sighting.corners.push_back({i, *at + Eigen::Vector2d(noise(random_), noise(random_))});
+            const double noise_y = noise(random_);
+            const double noise_x = noise(random_);
+            sighting.corners.push_back({i, *at + Eigen::Vector2d(noise_x, noise_y)});
         }
         if (sighting.corners.size() >= 6) problem_.sightings.push_back(std::move(sighting));
     }

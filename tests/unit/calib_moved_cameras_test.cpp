@@ -20,7 +20,9 @@ PairTurn Pair(std::size_t first, std::size_t second, const std::vector<Vector3d>
     PairTurn pair{.first = first, .second = second, .baseline_m = {0.3, 0.2, 0.9}};
     for (int i = 0; i < 60; ++i) {
         const double distance_m = 12 * std::exp(2 + 2 * any(random));
-        const Vector3d p = distance_m * Vector3d(1, 0.5 * any(random), 0.3 * any(random));
+        const double z = 0.3 * any(random);
+        const double y = 0.5 * any(random);
+        const Vector3d p = distance_m * Vector3d(1, y, z);
         pair.sights.push_back(
             {Rotation(turns[first]).transpose() * p.normalized(),
              Rotation(turns[second]).transpose() * (p + pair.baseline_m).normalized()});

@@ -119,9 +119,12 @@ void HoldAnywhere(ViewKeeper& keeper, int times, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> u(0, 1);
     for (int i = 0; i < times && !keeper.enough(); ++i) {
-        const Vector2d at(1280 * u(random), 720 * u(random));
+        const double y_px = 720 * u(random);
+        const double x_px = 1280 * u(random);
         const double distance_m = 0.35 + 1.0 * u(random);
-        keeper.Judge(Seen(at, distance_m, 1.4 * (u(random) - 0.5), 6 * u(random)), kSharp);
+        const double axis_rad = 6 * u(random);
+        const double tilt_rad = 1.4 * (u(random) - 0.5);
+        keeper.Judge(Seen({x_px, y_px}, distance_m, tilt_rad, axis_rad), kSharp);
     }
 }
 
