@@ -27,7 +27,7 @@ running_release() { on_machine 'cat "$(dirname "$(readlink "/proc/$(systemctl sh
 nothing_failed() {
     local failed
     failed=$(on_machine systemctl --failed --no-legend --plain)
-    [[ -z $failed ]] || { say_wrong "failed: $failed" && on_machine journalctl --boot --priority warning --no-pager --lines 20; }
+    [[ -z $failed ]] || { say_wrong "failed: $failed" && on_machine journalctl --boot --unit 'hitchview*' --no-pager --lines 20; }
 }
 
 # From the kernel's start: kernel, services before the program, the program until its first panorama was sent.

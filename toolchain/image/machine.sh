@@ -45,6 +45,8 @@ new_machine() {
         ip link set lo up
         ip link add machine0 type veth peer name machine1
         ip address add 10.77.0.1/24 dev machine0
+        # The virtual machine takes no segments larger than a frame.
+        ip link set machine0 gso_max_segs 1 gso_max_size 1514
         ip link set machine0 up
         ip link set machine1 up
     }
