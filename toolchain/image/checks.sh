@@ -164,7 +164,7 @@ make_release() {
     dpkg-deb --raw-extract out/packages/hitchview_*_amd64.deb "$folder"
     sed --in-place "s/^Version: .*/Version: $version/" "$folder/DEBIAN/control"
     case $kind in
-        good) printf '\n' >>"$folder/usr/bin/hitchview" ;;
+        good) printf '%s' "$version" >>"$folder/usr/bin/hitchview" ;;
         crashes) printf '#!/bin/sh\nexit 3\n' >"$folder/usr/bin/hitchview" ;;
         cannot_start) printf '#!/nowhere\n' >"$folder/usr/bin/hitchview" ;;
         no_picture) printf '#!/bin/sh\nexec sleep 1000\n' >"$folder/usr/bin/hitchview" ;;
