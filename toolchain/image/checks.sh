@@ -302,10 +302,8 @@ check_bring_up() {
     new_machine out/image/bare.img && boot_again 90 || return 1
     on_machine 'dpkg --purge hitchview-tools hitchview >/dev/null 2>&1; ! command -v hitchview' || say_wrong "Hitchview is there already"
     rm --recursive --force "$desk"
-    mkdir --parents "$desk/bin" "$desk/out"
+    mkdir --parents "$desk/bin"
     cp tests/image/{rig.yaml,cameras,can} "$machine_work/board/rig.calib.yaml" "$desk"
-    ln --symbolic "$PWD/toolchain" "$desk/toolchain"
-    ln --symbolic "$PWD/out/packages" "$desk/out/packages"
     # This machine is nobody's known host, and its key no usual one.
     for command in ssh scp; do
         printf '#!/bin/sh\nexec %s %s -i %s "$@"\n' "$(command -v $command)" "${ssh_options[*]}" "$machine_key" >"$desk/bin/$command"
@@ -321,13 +319,12 @@ check_bring_up() {
                 if [[ $command == export* ]]; then
                     eval "$command"
                 else
-                    (cd "$desk" && PATH=$desk/bin:$PATH timeout 600 bash -c "$command" </dev/null >"$machine_work/step" 2>&1) || { say_wrong "$command:" && tail "$machine_work/step"; }
+                    # Scripts of the checkout run there, all else beside the vehicle's own files.
+                    ([[ $command == toolchain/* ]] || cd "$desk"; PATH=$desk/bin:$PATH timeout 600 bash -c "$command" </dev/null >"$machine_work/step" 2>&1) || { say_wrong "$command:" && tail "$machine_work/step"; }
                 fi ;;
             vehicle)
                 if [[ $command == *reboot ]]; then
-                    on_machine "$command" || true
-                    wait "$machine_process"
-                    boot_again 60 || return 1
+                    reboot_machine "$command" || return 1
                 else
                     on_machine "$command" >"$machine_work/step" 2>&1 || { say_wrong "$command:" && tail --lines=20 "$machine_work/step"; }
                 fi ;;
@@ -336,6 +333,19 @@ check_bring_up() {
     pkill --full "8080:127.0.0.1:8080" || true
     nothing_failed
     return $wrong
+}
+
+boot_id() { on_machine cat /proc/sys/kernel/random/boot_id 2>/dev/null; }
+
+# By a command of its own; the machine's process goes on.
+reboot_machine() {
+    local before end=$((SECONDS + 90)) now
+    before=$(boot_id)
+    on_machine "$1" || true
+    until now=$(boot_id) && [[ $now != "$before" ]]; do
+        [[ $SECONDS -lt $end ]] || { say_wrong "does not come back" && return 1; }
+        sleep 0.5
+    done
 }
 
 # The arm64 image boots by UEFI and makes panoramas of a recording.
