@@ -98,6 +98,10 @@ struct CameraConfig {
     [[nodiscard]] bool IsLive() const {
         return source == Source::kV4l2 || source == Source::kLibcamera;
     }
+    /// A video file or pictures; otherwise `replay` is an LCM log.
+    [[nodiscard]] bool ReadsPictures() const {
+        return source == Source::kReplay && replay.extension() != ".lcm";
+    }
 };
 
 struct UnitConfig {

@@ -121,7 +121,7 @@ hal::Checked<hal::Done> ApplySpan(const LogRigOptions& options, std::int64_t sta
 }
 
 bool IsLog(const CameraConfig& camera) {
-    return camera.source == Source::kReplay && camera.replay.extension() == ".lcm";
+    return camera.source == Source::kReplay && !camera.ReadsPictures();
 }
 
 /// Gives the camera its log's channel; each log is one recording.

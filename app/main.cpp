@@ -81,8 +81,8 @@ bool NeedsDesk(const std::filesystem::path& rig) {
     auto config = LoadRigConfig(rig);
     if (!config) return false;  // the verb itself says what is wrong
     for (const hitchview::algo::Unit unit : hitchview::algo::kUnits) {
-        for (const CameraConfig& camera : config->units[unit].cameras)
-            if (camera.source == CameraConfig::Source::kReplay) return true;
+        if (std::ranges::any_of(config->units[unit].cameras, &CameraConfig::ReadsPictures))
+            return true;
     }
     return false;
 }
