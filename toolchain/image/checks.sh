@@ -218,7 +218,7 @@ check_update_no_picture() { broken_update 9.4 no_picture; }
 
 # The power goes at any moment of a recording.
 check_power_cuts() {
-    local i recovered=0 logs=/var/lib/hitchview/recordings newest
+    local i recovered=0 logs=/var/lib/hitchview/recordings newest cut_at
     cut_power
     new_machine "$image" && boot_again 90 && wait_until_up || return 1
     on_machine "sed -i 's#^record: {#record: {folder: $logs, #' /etc/hitchview/rig.yaml && systemctl restart hitchview && sync"
@@ -227,11 +227,12 @@ check_power_cuts() {
         on_machine hitchview await --panoramas 30 --within 30 >/dev/null || { say_wrong "cut $i: no panoramas before it" && break; }
         sleep "$((RANDOM % 6)).$((RANDOM % 10))"
         newest=$(on_machine "ls -t $logs/*.lcm | head -n 1")
+        cut_at=$(date +%s.%N)
         cut_power
         boot_again 60 || { say_wrong "cut $i: does not boot" && break; }
-        wait_until_up || { say_wrong "cut $i" && break; }
+        wait_until_up >/dev/null || { say_wrong "cut $i" && break; }
         on_machine "hitchview check $newest --repair /tmp/repaired.lcm >/tmp/said 2>&1; hitchview check --json /tmp/repaired.lcm >/tmp/check.json; cat /tmp/check.json" >"$machine_work/check.json"
-        recording_is_whole "$i" && recovered=$((recovered + 1))
+        recording_is_whole "$i" "$cut_at" && recovered=$((recovered + 1))
         on_machine "rm -f /tmp/repaired.lcm; ls -t $logs/*.lcm | tail -n +4 | xargs -r rm -f"
     done
     echo "power cut $((i - 1)) times: booted each time, $recovered recordings recovered"
@@ -239,15 +240,15 @@ check_power_cuts() {
     return $wrong
 }
 
+# The repaired recording of a cut at $2: nothing in it damaged or left out, and at most two seconds before the cut missing.
 recording_is_whole() {
-    python3 - "$machine_work/check.json" "$1" <<'PYTHON' || { say_wrong "cut $1: recording not recovered"; return 1; }
+    python3 - "$machine_work/check.json" "$1" "$2" <<'PYTHON' || { say_wrong "cut $1: the recording is not recovered"; return 1; }
 import json, sys
-try:
-    check = json.load(open(sys.argv[1]))
-except ValueError as error:
-    sys.exit(f"no figures: {error}")
-recording = check["recording"]
-print(f"cut {sys.argv[2]}: {recording}")
+check = json.load(open(sys.argv[1]))
+missing_s = float(sys.argv[3]) - check["last_utime_us"] / 1e6
+lost = sum(camera["lost"] for camera in check["cameras"].values())
+print(f"cut {sys.argv[2]}: {check['events']} events of {check['duration_s']:.1f} s recovered, the last {missing_s:.2f} s missing")
+sys.exit(len(check["cameras"]) != 8 or lost > 0 or any(check["damage"].values()) or missing_s > 2)
 PYTHON
 }
 
