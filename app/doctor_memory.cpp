@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::uint64_t kMegabyte = 1'000'000;
 /// Code, libraries and stacks, all of it locked, estimation, and what compression takes whatever
-/// the canvas: 363 MB were measured.
-constexpr std::uint64_t kProgram = 400 * kMegabyte;
+/// the canvas: 147 MB were measured.
+constexpr std::uint64_t kProgram = 160 * kMegabyte;
 /// Panoramas that are drawn, sent or compressed, of 1.5 bytes a pixel, and the tables of the map.
 constexpr std::uint64_t kBytesPerCanvasPixel = 24;
 constexpr std::uint64_t kBytesPerCameraPixel = 2;
