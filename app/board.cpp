@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/camera_ahead.hpp"
+#include "app/faulty_camera.hpp"
 #include "app/live_camera_options.hpp"
 #include "app/log_replay.hpp"
 #include "app/publish_options.hpp"
@@ -193,6 +194,7 @@ hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, const 
     const int slots = options.held_frames + kFramesAhead + (options.recorded ? FrameTap::kHeld : 0);
     if (config.period) board->period_ = *config.period;
     if (const auto simulated = board->OpenSimulation(config); !simulated) return simulated.error();
+    board->is_live_ = config.IsLive();
     if (config.IsLive()) {
         const auto opened = board->OpenLiveCameras(config, slots);
         if (!opened) return opened.error();
@@ -216,7 +218,8 @@ hal::Checked<hal::Done> Board::OpenSimulation(const RigConfig& config) {
         }
     }
     if (!needed) return hal::Done{};
-    const std::string& name = config.simulation.scenario;
+    const bool scripted = options_.faults != nullptr && options_.faults->scenario;
+    const std::string& name = scripted ? *options_.faults->scenario : config.simulation.scenario;
     const drivers::Scenario* scenario = drivers::FindScenario(name);
     if (scenario == nullptr) {
         return config.file.string() + ": simulation.scenario is " + name + ", must be one of " +
@@ -224,6 +227,8 @@ hal::Checked<hal::Done> Board::OpenSimulation(const RigConfig& config) {
     }
     auto options =
         Overridden(scenario->options, config.simulation, config.period.value_or(kDefaultPeriod));
+    if (options_.faults != nullptr)
+        options.frames = options_.faults->frames.value_or(options.frames);
     if (options_.held_sheet != nullptr) options.sheet = *options_.held_sheet;
     auto rig = drivers::SimulatedRig::Create(options);
     if (!rig) return config.file.string() + ": simulation: " + rig.error();
@@ -247,7 +252,7 @@ hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit un
         }
         auto rendered =
             std::make_unique<drivers::SimulatedCamera>(*simulation_, index, hal::Instant{0}, slots);
-        Add(unit, std::make_unique<CameraAhead>(std::move(rendered), camera.name));
+        Add(unit, camera.name, std::make_unique<CameraAhead>(std::move(rendered), camera.name));
         return hal::Done{};
     }
     // Where the rig file states the pace, the frames were captured at it.
@@ -257,11 +262,25 @@ hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit un
     if (!replay) return config.file.string() + ": camera " + camera.name + ": " + replay.error();
     if (period_.count() == 0)
         period_ = hal::Instant(static_cast<std::int64_t>(1e9 / (*replay)->rate_hz()));
-    Add(unit, std::move(*replay));
+    Add(unit, camera.name, std::move(*replay));
     return hal::Done{};
 }
 
-hal::Camera& Board::Add(algo::Unit unit, std::unique_ptr<hal::Camera> camera) {
+std::unique_ptr<hal::Camera> Board::WithFaults(const std::string& name,
+                                               std::unique_ptr<hal::Camera> camera) {
+    if (options_.faults == nullptr) return camera;
+    std::vector<CameraFault> faults = options_.faults->Of(name);
+    if (faults.empty()) return camera;
+    const FaultyCamera::Pace pace{.clock = is_live_ ? clock_.get() : nullptr,
+                                  .period = period_.count() > 0 ? period_ : kDefaultPeriod};
+    return std::make_unique<FaultyCamera>(std::move(camera), std::move(faults), pace,
+                                          options_.held_frames + kFramesAhead +
+                                              (options_.recorded ? FrameTap::kHeld : 0));
+}
+
+hal::Camera& Board::Add(algo::Unit unit, const std::string& name,
+                        std::unique_ptr<hal::Camera> camera) {
+    camera = WithFaults(name, std::move(camera));
     if (options_.recorded) {
         auto tapped = std::make_unique<TappedCamera>(std::move(camera));
         taps_.push_back(&tapped->tap());
@@ -290,7 +309,7 @@ hal::Checked<hal::Done> Board::OpenLiveCameras(const RigConfig& config, int slot
     opening.AwaitAbsent();
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         const auto& [camera, unit, index] = cameras[i];
-        live_cameras_.push_back({&Add(unit, opening.Take(i)), camera->name, unit, index});
+        live_cameras_.push_back({&Add(unit, camera->name, opening.Take(i)), camera->name, unit, index});
     }
     return hal::Done{};
 }
@@ -303,7 +322,8 @@ void Board::OpenLogCamera(const RigConfig& config, algo::Unit unit, const Camera
         .slots = slots});
     drivers::LcmLogCamera* const source = logged.get();
     const std::size_t index = cameras_[unit].size();
-    hal::Camera& ahead = Add(unit, std::make_unique<CameraAhead>(std::move(logged), camera.name));
+    hal::Camera& ahead =
+        Add(unit, camera.name, std::make_unique<CameraAhead>(std::move(logged), camera.name));
     log_cameras_.push_back({.config = camera.log,
                             .name = camera.name,
                             .source = source,

@@ -23,6 +23,7 @@ struct SheetOptions;
 
 namespace hitchview::app {
 
+struct FaultScript;
 struct LogCamera;
 
 /// The hardware of one rig, opened: real, recorded or simulated. Everything else of the program
@@ -35,6 +36,8 @@ class Board {
         /// Live cameras (V4L2) that cannot be opened are lost from the start, and had when they
         /// come, if any other can be; false: they are an error.
         bool awaits_cameras = false;
+        /// What happens to the cameras; null: nothing. Borrowed by Open.
+        const FaultScript* faults = nullptr;
         /// What somebody holds before each simulated camera; null: nothing. Borrowed by Open.
         const drivers::SheetOptions* held_sheet = nullptr;
     };
@@ -80,7 +83,10 @@ class Board {
     hal::Checked<hal::Done> OpenLiveCameras(const RigConfig& config, int slots);
     void OpenLogCamera(const RigConfig& config, algo::Unit unit, const CameraConfig& camera,
                        int slots);
-    hal::Camera& Add(algo::Unit unit, std::unique_ptr<hal::Camera> camera);
+    hal::Camera& Add(algo::Unit unit, const std::string& name,
+                     std::unique_ptr<hal::Camera> camera);
+    std::unique_ptr<hal::Camera> WithFaults(const std::string& name,
+                                            std::unique_ptr<hal::Camera> camera);
     void StartSets(const RigConfig& config);
     hal::Checked<hal::Done> OpenCanBus(const RigConfig& config);
     hal::Checked<hal::Done> OpenSocketCan(const RigConfig& config);
@@ -96,6 +102,7 @@ class Board {
     std::unique_ptr<hal::CanBus> can_bus_;
     drivers::LcmLogCanBus* log_can_bus_ = nullptr;  ///< the same, of a recording
     bool is_can_live_ = false;
+    bool is_live_ = false;
     hal::Instant period_{};
     std::unique_ptr<hal::EventLog> event_log_;
     EventQueue events_;

@@ -48,6 +48,13 @@ int FrameOfLargestHitchAngle(const SimulatedRig& rig) {
     return best;
 }
 
+/// What the script says of the drive stands in place of what the options do.
+DemoOptions WithDriveOf(const FaultScript& faults, DemoOptions options) {
+    options.scenario = faults.scenario.value_or(options.scenario);
+    options.frames = faults.frames.value_or(options.frames);
+    return options;
+}
+
 /// One run over the recording with what was learnt of it.
 struct DemoRun {
     RunSummary summary;
@@ -121,7 +128,14 @@ class Demo {
 
 }  // namespace
 
-int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop) {
+int DemoVerb(const DemoOptions& given, const std::atomic<bool>& stop) {
+    std::optional<FaultScript> faults;
+    if (!given.faults.empty()) {
+        auto script = LoadFaultScript(given.faults);
+        if (!script) return Fail(kWrongUse, script.error());
+        faults = std::move(*script);
+    }
+    const DemoOptions options = faults ? WithDriveOf(*faults, given) : given;
     const auto rig = MakeDrive(options);
     if (!rig) return Fail(kWrongUse, rig.error());
     const auto recording = RecordDemo(*rig.value(), options.out / "recording", stop);
@@ -135,6 +149,7 @@ int DemoVerb(const DemoOptions& options, const std::atomic<bool>& stop) {
     plain.workers = options.workers;
     RunOptions unified = plain;
     unified.out = options.out;
+    unified.faults = std::move(faults);
     unified.write_video = unified.publish = true;
     unified.realtime = options.realtime || !options.headless;
     const auto after = demo.Drive(recording.value().rig(), unified);

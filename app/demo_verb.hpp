@@ -12,6 +12,7 @@ struct DemoOptions {
     int frames = 210;                        ///< frame sets of the drive, 30 per second. [30, 3000]
     int camera_width_px = 1280;  ///< of the simulated cameras, 16:9. 320, 640, 960, 1280 or 1920
     std::string scenario{};      ///< of the drive; empty: a slow slalom through narrow curves
+    std::filesystem::path faults{};  ///< script of what happens to the cameras; empty: nothing
     int workers = 2;             ///< [1, 16]
     bool realtime = false;       ///< one frame set per period; late ones are dropped
 };

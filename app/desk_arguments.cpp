@@ -21,6 +21,9 @@ CLI::App& AddDemo(CLI::App& app, DemoOptions& options) {
         ->capture_default_str();
     verb.add_option("--scenario", options.scenario,
                     "drive by name, see docs/rig.example.yaml; otherwise a slow slalom");
+    verb.add_option("--faults", options.faults,
+                    "faults of the cameras, by frame, and the drive to them (docs/faults.md)")
+        ->check(CLI::ExistingFile);
     verb.add_option("--camera-width", options.camera_width_px,
                     "width of the simulated cameras, 16:9; 640 is enough for the default panorama "
                     "and decodes faster")

@@ -5,6 +5,8 @@
 
 #include "algo/unit.hpp"
 #include "app/stage_times.hpp"
+#include "algo/unit_geometry.hpp"
+#include "hal/camera_state.hpp"
 #include "hal/frame.hpp"
 #include "hal/publisher.hpp"
 
@@ -16,6 +18,7 @@ struct FrameFigures {
     std::uint64_t dropped = 0;  ///< frame sets never shown
     std::uint64_t deadline_misses = 0;
     std::uint32_t cameras_missing = 0;
+    std::array<hal::CameraState, algo::kMaxCameras> camera_states{};
     hal::Instant captured_until{};
     algo::PerOverlap<hal::SeamState> seams{};
     algo::PerOverlap<int> matches{};

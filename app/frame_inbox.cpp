@@ -9,6 +9,15 @@ void FrameInbox::Put(std::size_t camera, hal::FrameLease frame, hal::Instant now
     const std::lock_guard lock(mutex_);
     if (closed_) return;
     Place& place = places_[camera];
+    place.heard_at = now;
+    place.connected = true;
+    ++place.counts.put;
+    const hal::Instant before = std::exchange(place.newest_stamp, frame.view().header.captured_at);
+    if (place.newest_stamp <= before) {
+        ++place.counts.disordered;
+        refused_.disordered[camera] = true;
+        return;
+    }
     place.pace.Add(frame.view().header);
     auto& [head, next] = place.frames;
     if (head && next) {
@@ -16,9 +25,6 @@ void FrameInbox::Put(std::size_t camera, hal::FrameLease frame, hal::Instant now
         ++place.counts.superseded;
     }
     (head ? next : head) = std::move(frame);
-    place.heard_at = now;
-    place.connected = true;
-    ++place.counts.put;
     changed_.notify_one();
 }
 
@@ -70,7 +76,18 @@ void FrameInbox::Visit::SetAside(const CameraMask& cameras) {
         Place& place = inbox_.places_[i];
         place.frames[0] = std::move(place.frames[1]);
         ++place.counts.set_aside;
+        inbox_.refused_.late[i] = true;
     }
+}
+
+CameraMask FrameInbox::Visit::Gone() const {
+    CameraMask gone;
+    for (std::size_t i = 0; i < inbox_.cameras_; ++i) gone[i] = !inbox_.places_[i].connected;
+    return gone;
+}
+
+FrameInbox::Visit::Refused FrameInbox::Visit::TakeRefused() {
+    return std::exchange(inbox_.refused_, {});
 }
 
 void FrameInbox::Visit::Wait(std::chrono::nanoseconds timeout) {

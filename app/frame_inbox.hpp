@@ -17,11 +17,13 @@ struct InboxCounts {
     std::uint64_t taken = 0;       ///< by a set
     std::uint64_t superseded = 0;  ///< two newer ones came before a set was made
     std::uint64_t set_aside = 0;   ///< no set could have them: see SetRule
-    std::uint64_t pending = 0;     ///< wait for a set; the four are all that were put in
+    std::uint64_t disordered = 0;  ///< their stamps went back
+    std::uint64_t pending = 0;     ///< wait for a set; the five are all that were put in
 };
 
 /// The two newest frames of each camera, from the capture threads to the one that makes sets of
-/// them. An older frame goes back to its camera when a newer one comes. Takes no memory.
+/// them. An older frame goes back to its camera when a newer one comes, and so does one whose stamp
+/// is not after that of the frame before. Takes no memory.
 class FrameInbox {
  public:
     /// `cameras`: at most kMaxCameras. `now`: when they were opened.
@@ -46,6 +48,15 @@ class FrameInbox {
         [[nodiscard]] PendingFrames Pending(hal::Instant now, hal::Instant patience) const;
         /// When any camera gave a frame last, or was opened.
         [[nodiscard]] hal::Instant heard_at() const;
+        /// Cameras whose device is gone, which CaptureThread has told.
+        [[nodiscard]] CameraMask Gone() const;
+        /// Cameras that gave frames which were set aside, or went back in time, since the call
+        /// before.
+        struct Refused {
+            CameraMask late;
+            CameraMask disordered;
+        };
+        Refused TakeRefused();
         /// The head of a camera that has one.
         hal::FrameLease Take(std::size_t camera);
         /// Heads.
@@ -68,12 +79,14 @@ class FrameInbox {
         bool connected = true;
         InboxCounts counts;
         CameraPace pace;
+        hal::Instant newest_stamp = hal::Instant::min();
     };
 
     const std::size_t cameras_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::array<Place, kMaxCameras> places_;
+    Visit::Refused refused_;
     bool closed_ = false;
 };
 

@@ -41,6 +41,7 @@ void HealthMonitor::Add(const FrameFigures& figures) {
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
         CameraState& state = cameras_[i];
         state.shown = (figures.cameras_missing >> i & 1U) == 0;
+        state.condition = figures.camera_states[i];
         if (!state.shown) continue;
         ++state.sets;
         state.newest = figures.captured_until;
@@ -78,6 +79,7 @@ hal::CameraHealth HealthMonitor::Measure(CameraState& state, Instant now, double
         .name = std::string_view(state.camera.name),
         .unit = std::string_view(algo::ToString(state.camera.unit)),
         .shown = state.shown,
+        .state = state.condition,
         .frames_per_s = Rate(counts.delivered, state.before, seconds),
         .age_ms = options_.paced && state.newest ? Milliseconds(now - *state.newest) : -1.0,
         .delivered = counts.delivered,

@@ -49,6 +49,7 @@ class HealthMonitor {
         std::uint64_t before = 0;  ///< frames at the measurement before
         std::optional<hal::Instant> newest{};
         bool shown = false;
+        hal::CameraState condition = hal::CameraState::kGood;
     };
     hal::CameraHealth Measure(CameraState& state, hal::Instant now, double seconds);
     void AddMemory(hal::Health& health) const;

@@ -5,6 +5,13 @@
 #include <utility>
 
 namespace hitchview::app {
+namespace {
+
+std::uint32_t Mask(const CameraMask& cameras) {
+    return static_cast<std::uint32_t>(cameras.to_ulong());
+}
+
+}  // namespace
 
 LiveFrameSynchronizer::LiveFrameSynchronizer(std::vector<LiveCamera> cameras, EventQueue& events,
                                              hal::Clock& clock, hal::Instant period,
@@ -45,7 +52,7 @@ hal::Result<FrameSet> LiveFrameSynchronizer::DoWaitSet() {
         if (verdict.taken.any()) return TakeSet(visit, verdict.taken);
         const hal::Instant empty_at =
             std::max(visit.heard_at() + kPatience * period_, empty_at_ + period_);
-        if (now >= empty_at) return EmptySet(now);
+        if (now >= empty_at) return EmptySet(visit, now);
         visit.Wait(std::min(verdict.ask_again_at, empty_at) - now);
     }
 }
@@ -65,17 +72,27 @@ FrameSet LiveFrameSynchronizer::TakeSet(FrameInbox::Visit& visit, const CameraMa
         first = false;
         set.leases[cameras_[i].unit][cameras_[i].index_in_unit] = std::move(frame);
     }
+    NoteMissing(visit, set);
     Number(set, set.captured_until);
     ++(set.cameras_missing == 0 ? counts_.complete : counts_.partial);
     spread_.Add(set.captured_until - set.captured_from);
     return set;
 }
 
-FrameSet LiveFrameSynchronizer::EmptySet(hal::Instant now) {
+/// Why cameras are missing.
+void LiveFrameSynchronizer::NoteMissing(FrameInbox::Visit& visit, FrameSet& set) {
+    const auto refused = visit.TakeRefused();
+    set.cameras_gone = Mask(visit.Gone()) & set.cameras_missing;
+    set.cameras_late = Mask(refused.late) & set.cameras_missing;
+    set.cameras_disordered = Mask(refused.disordered);
+}
+
+FrameSet LiveFrameSynchronizer::EmptySet(FrameInbox::Visit& visit, hal::Instant now) {
     empty_at_ = now;
     FrameSet set;
     set.captured_from = set.captured_until = now;
     set.cameras_missing = (1U << cameras_.size()) - 1;
+    NoteMissing(visit, set);
     Number(set, now);
     ++counts_.empty;
     return set;

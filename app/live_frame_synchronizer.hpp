@@ -67,7 +67,8 @@ class LiveFrameSynchronizer final : public FrameSynchronizer {
 
  private:
     hal::Result<FrameSet> DoWaitSet() override;
-    FrameSet EmptySet(hal::Instant now);
+    FrameSet EmptySet(FrameInbox::Visit& visit, hal::Instant now);
+    static void NoteMissing(FrameInbox::Visit& visit, FrameSet& set);
     FrameSet TakeSet(FrameInbox::Visit& visit, const CameraMask& taken);
     void Number(FrameSet& set, hal::Instant moment);
 

@@ -1,6 +1,7 @@
 #include "app/pipeline.hpp"
 
 #include "algo/unified_options.hpp"
+#include "app/camera_watch.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -22,6 +23,12 @@ algo::PixelLayout LayoutOf(hal::PixelFormat format) {
     }
 }
 
+hal::FrameFormat CanvasFormat(const algo::Projection& canvas) {
+    return {canvas.width_px, canvas.height_px, hal::PixelFormat::kI420, hal::Range::kFull};
+}
+
+}  // namespace
+
 algo::CameraFrame Borrow(const hal::FrameLease& lease) {
     if (!lease) return {};
     const hal::FrameView& view = lease.view();
@@ -37,12 +44,6 @@ algo::CameraFrame Borrow(const hal::FrameLease& lease) {
             .range = view.format.range == hal::Range::kFull ? algo::SampleRange::kFull
                                                             : algo::SampleRange::kLimited};
 }
-
-hal::FrameFormat CanvasFormat(const algo::Projection& canvas) {
-    return {canvas.width_px, canvas.height_px, hal::PixelFormat::kI420, hal::Range::kFull};
-}
-
-}  // namespace
 
 algo::RigFrames Borrow(const FrameSet& set) {
     algo::RigFrames frames;
@@ -83,6 +84,10 @@ const ShownPanorama* Pipeline::Process(FrameSet&& set) {
     ReleaseShown();
     FrameSet& held = held_[taken_++ % held_.size()];
     held = std::move(set);
+    if (watch_ != nullptr) {
+        const StageTimer timer(times_, Stage::kWatch);
+        watch_->Look(held);
+    }
     const algo::Composition* composition = nullptr;
     {
         const StageTimer timer(times_, Stage::kMotion);
@@ -134,6 +139,7 @@ const ShownPanorama* Pipeline::Show(const algo::Composition& composition) {
                            hal::PackedPlanes(format_, panorama_.data())},
                .captured_until = set.captured_until,
                .cameras_missing = set.cameras_missing,
+               .camera_states = set.camera_states,
                .composition = &composition};
     return &result_;
 }

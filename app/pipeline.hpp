@@ -23,11 +23,15 @@ struct ShownPanorama {
     hal::FrameView picture;  ///< I420, full range; sequence is the frame set's
     hal::Instant captured_until{};
     std::uint32_t cameras_missing = 0;
+    std::array<hal::CameraState, algo::kMaxCameras> camera_states{};
     const algo::Composition* composition = nullptr;
 };
 
 /// The pictures of a frame set, borrowed from its leases.
 algo::RigFrames Borrow(const FrameSet& set);
+algo::CameraFrame Borrow(const hal::FrameLease& lease);
+
+class CameraWatch;
 
 /// Whoever wants frame sets that the pipeline needs no more. Thread: pipeline.
 class ShownSets {
@@ -54,6 +58,9 @@ class Pipeline {
 
     /// Null: nobody. It must outlive the pipeline's work.
     void SetShownSets(ShownSets* shown_sets) { shown_sets_ = shown_sets; }
+
+    /// Looks at each set before it is used. Null: nobody. It must outlive the pipeline's work.
+    void SetWatch(CameraWatch* watch) { watch_ = watch; }
 
     /// Empty while the lookahead fills. The set's leases are kept until it was shown.
     const ShownPanorama* Process(FrameSet&& set);
@@ -88,6 +95,7 @@ class Pipeline {
     std::vector<std::uint8_t> view_;
     std::array<FrameSet, algo::kMaxLookahead + 1> held_;
     ShownSets* shown_sets_ = nullptr;
+    CameraWatch* watch_ = nullptr;
     std::uint64_t taken_ = 0;
     std::uint64_t shown_ = 0;
     ShownPanorama result_;

@@ -14,6 +14,12 @@ hal::Result<hal::FrameLease> RecordedFrameSynchronizer::WaitFrame(hal::Camera& c
     return hal::Error::kTimeout;
 }
 
+/// Damaged, or gone and to be had again.
+bool RecordedFrameSynchronizer::IsMissing(hal::Error error, hal::Camera& camera) {
+    if (error == hal::Error::kCorrupted) return true;
+    return error == hal::Error::kDisconnected && camera.Reopen().ok();
+}
+
 hal::Result<FrameSet> RecordedFrameSynchronizer::DoWaitSet() {
     FrameSet set;
     set.sequence = next_sequence_++;
@@ -22,8 +28,8 @@ hal::Result<FrameSet> RecordedFrameSynchronizer::DoWaitSet() {
     for (const algo::Unit unit : algo::kUnits) {
         for (std::size_t i = 0; i < cameras_[unit].size(); ++i, ++index) {
             auto frame = WaitFrame(*cameras_[unit][i]);
-            if (!frame && frame.error() != hal::Error::kCorrupted) return frame.error();
             if (!frame) {
+                if (!IsMissing(frame.error(), *cameras_[unit][i])) return frame.error();
                 set.cameras_missing |= 1U << index;
                 continue;
             }

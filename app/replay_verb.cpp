@@ -60,6 +60,8 @@ std::string Contradiction(const ReplayOptions& options) {
     if (options.run.speed != 1 && !options.run.realtime)
         return "--speed needs --realtime: otherwise it goes as fast as it can";
     if (options.coupling && !options.run.offline) return "--coupling needs --offline";
+    if (options.run.offline && !options.faults.empty())
+        return "--offline sees every frame twice: not with --faults";
     if (options.rig.empty() && options.logs.empty()) return "--rig or --log is needed";
     const bool part = !options.from.empty() || !options.to.empty();
     if (part && options.logs.empty()) return "--from and --to need --log";
@@ -78,6 +80,13 @@ int ReplayVerb(const ReplayOptions& options, const std::atomic<bool>& stop) {
                                                           stop);
     if (!config) return Fail(kWrongUse, config.error());
     RunOptions run = options.run;
+    if (!options.faults.empty()) {
+        auto script = LoadFaultScript(options.faults);
+        if (!script) return Fail(kWrongUse, script.error());
+        if (const auto checked = CheckCameras(*script, config.value()); !checked)
+            return Fail(kWrongUse, checked.error());
+        run.faults = std::move(*script);
+    }
     if (options.coupling == "literal") run.coupling = algo::Coupling::kLiteral;
     run.write_video = run.write_video || options.metrics;
     run.write_views = run.write_views || options.metrics;

@@ -9,6 +9,7 @@ struct ReplayOptions {
     std::vector<std::filesystem::path> logs{};  ///< recordings to be replayed; `rig` may be empty
     std::string from{};                         ///< see LogRigOptions
     std::string to{};
+    std::filesystem::path faults{};             ///< script of RunOptions::faults; empty: none
     RunOptions run{};
     std::optional<std::string> coupling{};  ///< literal or corrected; offline only
     bool metrics = false;                   ///< track the written views again and measure them

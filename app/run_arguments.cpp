@@ -21,6 +21,9 @@ void AddRunOptions(CLI::App& verb, ReplayOptions& options) {
                   "write tractor.avi and trailer.avi: each view on the canvas before blending");
     verb.add_flag("--trap-alloc", options.run.trap_alloc,
                   "stop at the first heap call after the start and say who made it");
+    verb.add_option("--faults", options.faults,
+                    "faults of the cameras, by frame (docs/faults.md): what is done about them")
+        ->check(CLI::ExistingFile);
     verb.add_flag("--metrics", options.metrics,
                   "track the written views again and fill the report's quality figures");
 }

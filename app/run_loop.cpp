@@ -7,6 +7,7 @@
 #include "algo/unified_vertex_motion.hpp"
 #include "app/board.hpp"
 #include "app/calibration_mismatch.hpp"
+#include "app/camera_watch.hpp"
 #include "app/first_sets.hpp"
 #include "app/log_rig.hpp"
 #include "app/panorama_loop.hpp"
@@ -88,6 +89,27 @@ hal::Checked<hal::Done> Prime(Board& board, Pipeline& pipeline, const std::atomi
     return hal::Done{};
 }
 
+std::vector<WatchedPicture> WatchedPictures(const RigConfig& config) {
+    std::vector<WatchedPicture> pictures;
+    for (const algo::Unit unit : algo::kUnits) {
+        const auto& cameras = config.units[unit].cameras;
+        for (std::size_t i = 0; i < cameras.size(); ++i)
+            pictures.push_back({cameras[i].name, unit, i});
+    }
+    return pictures;
+}
+
+/// Videos and pictures may repeat themselves, and be as black as they like.
+bool IsWatched(const RigConfig& config, const RunOptions& options) {
+    if (options.offline) return false;
+    if (options.faults) return true;
+    for (const algo::Unit unit : algo::kUnits) {
+        for (const CameraConfig& camera : config.units[unit].cameras)
+            if (camera.ReadsPictures()) return false;
+    }
+    return true;
+}
+
 bool Limited(const RunOptions& options, std::uint64_t taken) {
     return options.frames && taken >= static_cast<std::uint64_t>(*options.frames);
 }
@@ -164,7 +186,12 @@ hal::Checked<RunSummary> Run(const RigConfig& config, const RunOptions& options,
     const Board::Options opened{.held_frames = motion_options.lookahead_frames + 2 +
                                                RunOutputs::HeldFrames(config, options),
                                 .recorded = options.record && !config.record.folder.empty(),
-                                .awaits_cameras = options.realtime};
+                                .awaits_cameras = options.realtime,
+                                .faults = options.faults ? &*options.faults : nullptr};
+    if (options.faults) {
+        if (const auto checked = CheckCameras(*options.faults, config); !checked)
+            return checked.error();
+    }
     auto board = Board::Open(config, opened);
     if (!board) return board.error();
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
@@ -197,8 +224,12 @@ hal::Checked<RunSummary> Run(const RigConfig& config, const RunOptions& options,
     auto outputs = RunOutputs::Open(config, options, {**board, rig.value(), pipeline}, summary);
     if (!outputs) return outputs.error();
     if (options.realtime) EnterRealTime(config.schedule);
+    CameraWatch watch(WatchedPictures(config), (*board)->period(), (*board)->events(),
+                      (*board)->clock());
+    if (IsWatched(config, options)) pipeline.SetWatch(&watch);
     PanoramaLoop loop({**board, *motion.any, pipeline, **outputs}, options, summary);
     const auto done = loop.Run(stop, hook);
+    pipeline.SetWatch(nullptr);
     pipeline.Start();  // gives the last leases back while the cameras live
     const auto finished = (*outputs)->Finish();
     if (!done) return done.error();

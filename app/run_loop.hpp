@@ -11,6 +11,7 @@
 #include "algo/paper_stages.hpp"
 #include "app/config.hpp"
 #include "app/event_queue.hpp"
+#include "app/fault_script.hpp"
 #include "app/heap_calls.hpp"
 #include "app/live_frame_synchronizer.hpp"
 #include "app/pipeline.hpp"
@@ -40,6 +41,7 @@ struct RunOptions {
     bool publish = false;      ///< over LCM
     bool record = false;       ///< where the rig file says so
     std::atomic<bool>* trigger = nullptr;  ///< of the recorder; see RecorderOptions
+    std::optional<FaultScript> faults{};   ///< that happen to the cameras
     bool trap_alloc = false;               ///< the first heap call after READY stops the program
 };
 

@@ -56,6 +56,7 @@ FrameFigures Figures(const hal::PanoramaStatus& status, const ShownPanorama& sho
                          .dropped = run.dropped,
                          .deadline_misses = run.deadline_misses,
                          .cameras_missing = shown.cameras_missing,
+                         .camera_states = shown.camera_states,
                          .captured_until = captured_until,
                          .seams = {status.seams},
                          .matches = {status.seam_matches}};

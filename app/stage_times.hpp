@@ -7,12 +7,12 @@
 namespace hitchview::app {
 
 /// The steps of one frame set that are timed. kTotal is the sum as the deadline sees it.
-enum class Stage { kMotion, kMap, kGains, kBands, kRender, kTotal };
-inline constexpr int kStages = 6;
+enum class Stage { kWatch, kMotion, kMap, kGains, kBands, kRender, kTotal };
+inline constexpr int kStages = 7;
 
 constexpr std::string_view ToString(Stage stage) {
-    constexpr std::array<std::string_view, kStages> kNames{"motion", "map",    "gains",
-                                                           "bands",  "render", "total"};
+    constexpr std::array<std::string_view, kStages> kNames{"watch", "motion", "map",  "gains",
+                                                           "bands", "render", "total"};
     return kNames[static_cast<std::size_t>(stage)];
 }
 

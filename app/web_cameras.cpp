@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/web_json.hpp"
+#include "hal/camera_state.hpp"
 #include "lcmtypes/hitchview_event_t.h"
 
 namespace hitchview::app {
@@ -23,6 +24,39 @@ bool IsRecent(std::optional<Instant> maybe_at, Instant now, milliseconds holds) 
     return maybe_at && now - *maybe_at <= holds;
 }
 
+std::string ConditionOf(int state) {
+    const bool known = state >= 0 && state < static_cast<int>(hal::kCameraStates.size());
+    return known ? hal::ToString(static_cast<hal::CameraState>(state)) : "unknown";
+}
+
+/// The state that an event of a camera tells; empty for other events.
+std::optional<hal::CameraState> StateToldBy(int code) {
+    switch (code) {
+        case HITCHVIEW_EVENT_T_CAMERA_LOST:
+            return hal::CameraState::kLost;
+        case HITCHVIEW_EVENT_T_CAMERA_BACK:
+            return hal::CameraState::kGood;
+        case HITCHVIEW_EVENT_T_CAMERA_LATE:
+            return hal::CameraState::kLate;
+        case HITCHVIEW_EVENT_T_CAMERA_DISORDERED:
+            return hal::CameraState::kDisordered;
+        case HITCHVIEW_EVENT_T_CAMERA_BLACK:
+            return hal::CameraState::kBlack;
+        case HITCHVIEW_EVENT_T_CAMERA_BLINDED:
+            return hal::CameraState::kBlinded;
+        case HITCHVIEW_EVENT_T_CAMERA_FROZEN:
+            return hal::CameraState::kFrozen;
+        case HITCHVIEW_EVENT_T_CAMERA_STUCK:
+            return hal::CameraState::kStuck;
+        case HITCHVIEW_EVENT_T_CAMERA_BLURRED:
+            return hal::CameraState::kBlurred;
+        case HITCHVIEW_EVENT_T_CAMERA_DIRTY:
+            return hal::CameraState::kDirty;
+        default:
+            return std::nullopt;
+    }
+}
+
 /// `began`: a panorama was made, before that none shows a camera.
 WebCamera CameraOf(const drivers::LoggedCameraHealth& health, bool began) {
     return {.name = std::string(health.name),
@@ -34,6 +68,7 @@ WebCamera CameraOf(const drivers::LoggedCameraHealth& health, bool began) {
             .corrupted = health.corrupted,
             .reopened = health.reopened,
             .has_figures = true,
+            .condition = ConditionOf(health.state),
             .shown = health.shown || !began};
 }
 
@@ -84,8 +119,12 @@ void WebCameras::TakeHealth(const drivers::LoggedHealth& health, Instant now) {
 void WebCameras::TakeEvent(const drivers::LoggedEvent& event, Instant now) {
     const auto camera = std::ranges::find(cameras_, event.subject, &WebCamera::name);
     if (camera == cameras_.end()) return;
-    if (event.code == HITCHVIEW_EVENT_T_CAMERA_LOST) camera->lost_since = now;
-    if (event.code == HITCHVIEW_EVENT_T_CAMERA_BACK) {
+    const auto state = StateToldBy(event.code);
+    if (!state) return;
+    camera->condition = hal::ToString(*state);
+    if (!hal::IsShown(*state)) {
+        camera->lost_since = now;
+    } else {
         camera->lost_since.reset();
         camera->shown = true;
     }

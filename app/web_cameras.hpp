@@ -30,6 +30,7 @@ struct WebCamera {
     std::int64_t corrupted = 0;
     std::int64_t reopened = 0;
     bool has_figures = false;                  ///< what stands above came in a health message
+    std::string condition = "good";            ///< as the newest health message or event says
     bool shown = true;                         ///< as the newest health message says
     std::optional<hal::Instant> lost_since{};  ///< an event said so
 };

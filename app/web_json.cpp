@@ -67,7 +67,8 @@ json CameraJson(const WebCamera& camera) {
                   {"delivered", camera.delivered},
                   {"lost", camera.lost},
                   {"corrupted", camera.corrupted},
-                  {"reopened", camera.reopened}});
+                  {"reopened", camera.reopened},
+                  {"condition", camera.condition}});
     return known;
 }
 

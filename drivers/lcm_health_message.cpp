@@ -11,6 +11,18 @@ static_assert(int(State::kArmed) == HITCHVIEW_HEALTH_T_RECORDING_ARMED);
 static_assert(int(State::kOn) == HITCHVIEW_HEALTH_T_RECORDING_ON);
 static_assert(int(State::kStopped) == HITCHVIEW_HEALTH_T_RECORDING_STOPPED);
 
+using Camera = hal::CameraState;
+static_assert(int(Camera::kGood) == HITCHVIEW_CAMERA_HEALTH_T_GOOD);
+static_assert(int(Camera::kLost) == HITCHVIEW_CAMERA_HEALTH_T_LOST);
+static_assert(int(Camera::kLate) == HITCHVIEW_CAMERA_HEALTH_T_LATE);
+static_assert(int(Camera::kDisordered) == HITCHVIEW_CAMERA_HEALTH_T_DISORDERED);
+static_assert(int(Camera::kBlack) == HITCHVIEW_CAMERA_HEALTH_T_BLACK);
+static_assert(int(Camera::kBlinded) == HITCHVIEW_CAMERA_HEALTH_T_BLINDED);
+static_assert(int(Camera::kFrozen) == HITCHVIEW_CAMERA_HEALTH_T_FROZEN);
+static_assert(int(Camera::kStuck) == HITCHVIEW_CAMERA_HEALTH_T_STUCK);
+static_assert(int(Camera::kBlurred) == HITCHVIEW_CAMERA_HEALTH_T_BLURRED);
+static_assert(int(Camera::kDirty) == HITCHVIEW_CAMERA_HEALTH_T_DIRTY);
+
 /// The generated types have no const members; encoding only reads them.
 template <typename Text>
 char* Borrow(const Text& text) {
@@ -25,6 +37,7 @@ hitchview_camera_health_t ToMessage(const hal::CameraHealth& camera) {
     return {.name = Borrow(camera.name),
             .unit = Borrow(camera.unit),
             .shown = static_cast<std::int8_t>(camera.shown),
+            .state = static_cast<std::int8_t>(camera.state),
             .frames_per_s = camera.frames_per_s,
             .age_ms = camera.age_ms,
             .delivered = Signed(camera.delivered),

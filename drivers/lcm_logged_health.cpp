@@ -24,6 +24,7 @@ LoggedCameraHealth TakeCamera(LcmMessageReader& reader, bool& sound) {
     camera.name = TakeShortText(reader, sound);
     camera.unit = TakeShortText(reader, sound);
     camera.shown = reader.Take<std::int8_t>() != 0;
+    camera.state = reader.Take<std::int8_t>();
     camera.frames_per_s = reader.TakeDouble();
     camera.age_ms = reader.TakeDouble();
     camera.delivered = reader.Take<std::int64_t>();

@@ -22,6 +22,7 @@ struct LoggedCameraHealth {
     std::string_view name{};
     std::string_view unit{};
     bool shown = false;
+    std::int8_t state = 0;    ///< of hal::CameraState, or one that is not known yet
     double frames_per_s = 0;  ///< finite, not below 0
     double age_ms = 0;        ///< below 0, or not a number: no frame yet
     std::int64_t delivered = 0;

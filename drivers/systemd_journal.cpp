@@ -60,6 +60,14 @@ std::string_view PriorityOf(EventCode code) {
         case EventCode::kRecordingFailed:
             return kError;
         case EventCode::kCameraLost:
+        case EventCode::kCameraLate:
+        case EventCode::kCameraDisordered:
+        case EventCode::kCameraBlack:
+        case EventCode::kCameraBlinded:
+        case EventCode::kCameraFrozen:
+        case EventCode::kCameraStuck:
+        case EventCode::kCameraBlurred:
+        case EventCode::kCameraDirty:
         case EventCode::kCalibrationMismatch:
         case EventCode::kDeadlineMissed:
         case EventCode::kPanoramasDropped:
@@ -80,7 +88,8 @@ std::string_view PriorityOf(EventCode code) {
 }
 
 bool IsOfCamera(EventCode code) {
-    return code == EventCode::kCameraLost || code == EventCode::kCameraBack;
+    constexpr std::int16_t kFirstOfSeams = 20;
+    return static_cast<std::int16_t>(code) < kFirstOfSeams;
 }
 
 /// "camera rear: lost: silent"

@@ -13,6 +13,14 @@ namespace hitchview::hal {
 enum class EventCode : std::int16_t {
     kCameraLost = 1,
     kCameraBack = 2,
+    kCameraLate = 3,
+    kCameraDisordered = 4,
+    kCameraBlack = 5,
+    kCameraBlinded = 6,
+    kCameraFrozen = 7,
+    kCameraStuck = 8,
+    kCameraBlurred = 9,
+    kCameraDirty = 10,
     kSeamLocked = 20,
     kSeamCoast = 21,
     kSeamReacquire = 22,
@@ -30,11 +38,14 @@ enum class EventCode : std::int16_t {
 
 /// In the order of their numbers.
 inline constexpr std::array kEventCodes{
-    EventCode::kCameraLost,          EventCode::kCameraBack,         EventCode::kSeamLocked,
-    EventCode::kSeamCoast,           EventCode::kSeamReacquire,      EventCode::kSeamNoOverlap,
-    EventCode::kCalibrationMismatch, EventCode::kDeadlineMissed,     EventCode::kDeadlineKept,
-    EventCode::kPanoramasDropped,    EventCode::kReceiveBufferSmall, EventCode::kRecordingStarted,
-    EventCode::kRecordingStopped,    EventCode::kRecordingFailed,    EventCode::kRecordingDropped};
+    EventCode::kCameraLost,          EventCode::kCameraBack,         EventCode::kCameraLate,
+    EventCode::kCameraDisordered,    EventCode::kCameraBlack,        EventCode::kCameraBlinded,
+    EventCode::kCameraFrozen,        EventCode::kCameraStuck,        EventCode::kCameraBlurred,
+    EventCode::kCameraDirty,         EventCode::kSeamLocked,         EventCode::kSeamCoast,
+    EventCode::kSeamReacquire,       EventCode::kSeamNoOverlap,      EventCode::kCalibrationMismatch,
+    EventCode::kDeadlineMissed,      EventCode::kDeadlineKept,       EventCode::kPanoramasDropped,
+    EventCode::kReceiveBufferSmall,  EventCode::kRecordingStarted,   EventCode::kRecordingStopped,
+    EventCode::kRecordingFailed,     EventCode::kRecordingDropped};
 
 constexpr const char* ToString(EventCode code) {
     switch (code) {
@@ -42,6 +53,22 @@ constexpr const char* ToString(EventCode code) {
             return "camera_lost";
         case EventCode::kCameraBack:
             return "camera_back";
+        case EventCode::kCameraLate:
+            return "camera_late";
+        case EventCode::kCameraDisordered:
+            return "camera_disordered";
+        case EventCode::kCameraBlack:
+            return "camera_black";
+        case EventCode::kCameraBlinded:
+            return "camera_blinded";
+        case EventCode::kCameraFrozen:
+            return "camera_frozen";
+        case EventCode::kCameraStuck:
+            return "camera_stuck";
+        case EventCode::kCameraBlurred:
+            return "camera_blurred";
+        case EventCode::kCameraDirty:
+            return "camera_dirty";
         case EventCode::kSeamLocked:
             return "seam_locked";
         case EventCode::kSeamCoast:

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "hal/camera_state.hpp"
 #include "hal/event.hpp"
 #include "hal/fixed_text.hpp"
 #include "hal/frame.hpp"
@@ -14,6 +15,7 @@ struct CameraHealth {
     FixedText<64> name{};         ///< in the rig file
     FixedText<16> unit{};         ///< tractor or trailer
     bool shown = false;           ///< its frames are in the newest panorama
+    CameraState state = CameraState::kGood;
     double frames_per_s = 0;      ///< that came in the last second
     double age_ms = -1;           ///< since the newest exposure; below 0 before the first
     std::uint64_t delivered = 0;  ///< frames, since it was opened first

@@ -6,6 +6,13 @@ const STALE_AFTER_MS = 3000;
 const PAUSE_MS = 400;
 const WORDS = { live: "LIVE", lost: "LOST", unknown: "NO CONTACT" };
 
+/** LIVE, LIVE: DIRTY, LOST, or why its pictures are not shown. */
+function wordFor({ state, condition }) {
+    const word = WORDS[state] ?? state;
+    if (state === "unknown" || !condition || condition === "good" || condition === "lost") return word;
+    return state === "live" ? `${word}: ${condition.toUpperCase()}` : condition.toUpperCase();
+}
+
 class Tile {
     constructor() {
         this.root = make("li", "camera");
@@ -36,7 +43,7 @@ class Tile {
         this.root.dataset.state = camera.state;
         setText(this.name, camera.name);
         this.name.title = camera.name;
-        setText(this.word, WORDS[camera.state] ?? camera.state);
+        setText(this.word, wordFor(camera));
         setText(this.unit, camera.unit);
         const told = camera.state !== "unknown" && isNumber(camera.frames_per_s);
         setText(this.rate, told ? figure(camera.frames_per_s, "fps", 1) : "");

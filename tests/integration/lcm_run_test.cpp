@@ -240,7 +240,7 @@ TEST_F(LcmRunTest, HealthComesOnceASecondFromTheStart) {
         ASSERT_EQ(health.ncameras, 8);
         EXPECT_STREQ(health.cameras[0].unit, "tractor");
         EXPECT_STREQ(health.cameras[7].unit, "trailer");
-        ASSERT_EQ(health.nstages, 9);
+        ASSERT_EQ(health.nstages, 10);
         EXPECT_STREQ(health.stages[8].name, "latency");
         if (health.sequence > 0) {
             EXPECT_GT(health.panoramas, 0);

@@ -117,6 +117,8 @@ inline MessageBytes HealthBytes(std::uint32_t sequence, RigHealth rig) {
         cameras.push_back({.name = rig.cameras[i].data(),
                            .unit = units.at(i < 3 ? 0 : 1).data(),
                            .shown = shown,
+                           .state = static_cast<std::int8_t>(shown ? HITCHVIEW_CAMERA_HEALTH_T_GOOD
+                                                                   : HITCHVIEW_CAMERA_HEALTH_T_LOST),
                            .frames_per_s = shown ? 30.0 : 0.0,
                            .age_ms = 21,
                            .delivered = 1000 + sequence,

@@ -248,6 +248,7 @@ hal::Health FullHealth() {
     health.cameras.Add({.name = std::string_view("front"),
                         .unit = std::string_view("tractor"),
                         .shown = true,
+                        .state = hal::CameraState::kDirty,
                         .frames_per_s = 29.5,
                         .age_ms = 41,
                         .delivered = 370,
@@ -305,6 +306,7 @@ TEST_F(LcmPublisherTest, HealthHasItsCamerasAndStages) {
     EXPECT_EQ(camera.lost, 5);
     EXPECT_EQ(camera.corrupted, 2);
     EXPECT_EQ(camera.reopened, 1);
+    EXPECT_EQ(camera.state, HITCHVIEW_CAMERA_HEALTH_T_DIRTY);
     ASSERT_EQ(message.nstages, 2);
     EXPECT_STREQ(message.stages[0].name, "motion");
     EXPECT_STREQ(message.stages[1].name, "total");

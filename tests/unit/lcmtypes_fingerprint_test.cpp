@@ -137,6 +137,7 @@ TEST(FingerprintTest, HealthHasNotChanged) {
     const TypeHash camera({{"string", "name", ""},
                            {"string", "unit", ""},
                            {"boolean", "shown", ""},
+                           {"int8_t", "state", ""},
                            {"double", "frames_per_s", ""},
                            {"double", "age_ms", ""},
                            {"int64_t", "delivered", ""},

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "algo/picture_look.hpp"
+#include "app/camera_judge.hpp"
+#include "app/config.hpp"
+
+namespace hitchview::app {
+
+/// Finds what is wrong with pictures. Brightness and repetition are of one picture alone; whether
+/// detail is missing is judged against what the rig's other cameras see in the same part of their
+/// pictures at that time, so that fog, night or snow are no fault of a camera: no judgement with
+/// fewer than kLeastCameras. Thread: one.
+class PictureSigns {
+ public:
+    static constexpr std::size_t kLeastCameras = 3;
+
+    /// Before each set.
+    void Begin();
+    /// The picture of one camera in the set.
+    void Add(std::size_t camera, const algo::CameraFrame& picture);
+    /// After the last one: adds what the pictures show to the signs of their cameras.
+    void Finish(std::array<CameraSigns, kMaxCameras>& signs);
+    void Reset() { *this = PictureSigns(); }
+
+ private:
+    using Cells = std::array<float, algo::PictureLook::kCells>;
+
+    struct Camera {
+        bool present = false;  ///< in this set
+        algo::PictureLook look;
+        std::uint64_t print_before = 0;
+        std::optional<std::uint64_t> whole_print_before;  ///< where the samples were equal, too
+        bool repeated = false;
+        float sharpness = 0;  ///< of the sharpest parts
+        Cells recent{};       ///< detail of each part, the most of the last moments
+    };
+
+    static bool Repeats(Camera& camera, const algo::CameraFrame& picture);
+    [[nodiscard]] std::size_t Present() const;
+    template <typename Value>
+    [[nodiscard]] float Median(const Value& value_of) const;
+    [[nodiscard]] bool IsDirty(const Camera& camera, const Cells& usual) const;
+
+    std::array<Camera, kMaxCameras> cameras_;
+};
+
+}  // namespace hitchview::app
