@@ -51,8 +51,9 @@ int SocketCanMessage::Receive(int socket) {
 int SocketCanMessage::Take(std::span<const std::uint8_t> frame,
                            std::span<const std::uint8_t> control) {
     header_.msg_controllen = std::min(control.size(), control_.size());
-    std::memcpy(control_.data(), control.data(), header_.msg_controllen);
-    std::memcpy(&frame_, frame.data(), std::min(frame.size(), sizeof frame_));
+    std::ranges::copy(std::as_bytes(control).first(header_.msg_controllen), control_.begin());
+    std::ranges::copy(std::as_bytes(frame).first(std::min(frame.size(), sizeof frame_)),
+                      reinterpret_cast<std::byte*>(&frame_));
     return Accept(frame.size());
 }
 

@@ -6,7 +6,7 @@ namespace hitchview::tests {
 namespace {
 
 TEST(FuzzCalibrationTest, NoFileOfTheCorpusAndNoMutationOfOneBreaksAPromise) {
-    RunCorpus("calibration", 500);
+    RunCorpus("calibration", 2000);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace hitchview::tests {
 namespace {
 
 TEST(FuzzCanTest, NoFileOfTheCorpusAndNoMutationOfOneBreaksAPromise) {
-    RunCorpus("can", 20000);
+    RunCorpus("can", 50'000);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace hitchview::tests {
 namespace {
 
 TEST(FuzzDbcTest, NoFileOfTheCorpusAndNoMutationOfOneBreaksAPromise) {
-    RunCorpus("dbc", 10000);
+    RunCorpus("dbc", 30'000);
 }
 
 }  // namespace

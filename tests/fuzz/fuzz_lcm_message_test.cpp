@@ -50,7 +50,7 @@ TEST(FuzzLcmMessageTest, NoRandomBytesBreakAPromise) {
 }
 
 TEST(FuzzLcmMessageTest, NoFileOfTheCorpusAndNoMutationOfOneBreaksAPromise) {
-    RunCorpus("lcm_message", 20000);
+    RunCorpus("lcm_message", 50'000);
 }
 
 }  // namespace

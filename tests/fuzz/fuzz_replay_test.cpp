@@ -6,7 +6,7 @@ namespace hitchview::tests {
 namespace {
 
 TEST(FuzzReplayTest, NoFileOfTheCorpusAndNoMutationOfOneBreaksAPromise) {
-    RunCorpus("replay", 10000);
+    RunCorpus("replay", 30'000);
 }
 
 }  // namespace

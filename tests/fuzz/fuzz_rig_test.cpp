@@ -6,7 +6,7 @@ namespace hitchview::tests {
 namespace {
 
 TEST(FuzzRigTest, NoFileOfTheCorpusAndNoMutationOfOneBreaksAPromise) {
-    RunCorpus("rig", 300);
+    RunCorpus("rig", 2000);
 }
 
 }  // namespace

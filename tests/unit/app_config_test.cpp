@@ -9,15 +9,13 @@ namespace {
 
 using algo::Unit;
 
-/// Each line ten times the one before.
-std::string AliasesOfAliases(int lines) {
-    std::string text = "x0: &x0 [1]\n";
-    for (int i = 1; i < lines; ++i) {
-        const std::string last = "*x" + std::to_string(i - 1);
-        const std::string name = "x" + std::to_string(i);
-        text += name + ": &" + name + " [" + last;
-        for (int k = 1; k < 10; ++k) text += ", " + last;
-        text += "]\n";
+/// Each line stands for ten times the one before.
+std::string AliasesOfAliases(char lines) {
+    std::string text = "a: &a [1]\n";
+    for (char name = 'b'; name < 'a' + lines; ++name) {
+        text.append(1, name).append(": &").append(1, name).append(" [");
+        for (int k = 0; k < 10; ++k) text.append("*").append(1, static_cast<char>(name - 1)) += ',';
+        text.append("]\n");
     }
     return text;
 }
