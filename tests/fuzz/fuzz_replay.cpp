@@ -33,11 +33,14 @@ std::string NameOf(const std::string& path) {
     return path.substr(path.rfind('/') + 1);
 }
 
-/// The digits where the pattern has its number, as a number.
-unsigned NumberOf(const std::string& path, std::size_t before) {
+/// What stands in a path where the pattern has its number.
+unsigned NumberOf(const std::string& path, const std::string& pattern) {
     const std::string name = NameOf(path);
+    const std::string form = NameOf(pattern);
+    const std::size_t before = form.find('%');
+    const std::size_t after = form.size() - 1 - form.find('d', before);
     unsigned number = 0;
-    std::from_chars(name.data() + before, name.data() + name.size(), number);
+    std::from_chars(name.data() + before, name.data() + name.size() - after, number);
     return number;
 }
 
@@ -47,11 +50,10 @@ void PickNumbered(const std::string& pattern, const Paths& paths) {
     HV_EXPECT(chosen.ok() || chosen.error().starts_with(pattern + ": "));
     if (!chosen) return;
     ExpectSome(chosen.value(), paths);
-    const std::size_t before = NameOf(pattern).find('%');
-    const unsigned first = NumberOf(chosen.value().front(), before);
+    const unsigned first = NumberOf(chosen.value().front(), pattern);
     HV_EXPECT(first <= 1);
     for (std::size_t i = 0; i < chosen.value().size(); ++i)
-        HV_EXPECT(NumberOf(chosen.value()[i], before) == first + i);
+        HV_EXPECT(NumberOf(chosen.value()[i], pattern) == first + i);
 }
 
 /// The same pictures in the same order, in whatever order the folder lists them.
