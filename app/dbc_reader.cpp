@@ -1,5 +1,6 @@
 #include "app/dbc_reader.hpp"
 
+#include <cctype>
 #include <cmath>
 
 namespace hitchview::app {
@@ -12,7 +13,8 @@ std::string Shown(const DbcToken& token) {
     if (token.kind == Kind::kEnd) return "the end of the file";
     if (token.kind == Kind::kOpenText) return "a text without its closing quote";
     std::string shown = "'";
-    shown += token.text.substr(0, kLongest);
+    for (const char c : token.text.substr(0, kLongest))
+        shown += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? '?' : c;
     return shown + "'";
 }
 

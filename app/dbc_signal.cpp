@@ -18,6 +18,10 @@ constexpr int kLongestField_bits = 32;
 constexpr int kLargestFrame_bits = 64 * 8;
 constexpr int kCyclesOfAge = 5;
 constexpr std::chrono::milliseconds kLeastAge{100};
+constexpr std::chrono::milliseconds kMostAge{60'000};
+constexpr double kLargestFactor_deg = 1000;
+constexpr double kLargestOffset_deg = 100'000;
+constexpr double kLargestAngle_deg = 360;
 
 std::string Named(const DbcSignal& signal) {
     return "(signal " + signal.name + " in line " + std::to_string(signal.line) + ")";
@@ -66,6 +70,8 @@ void TakeRange(const DbcSignal& dbc, double unit_deg, HitchAngleSignal& signal) 
     signal.min_deg = dbc.min * unit_deg;
     signal.max_deg = dbc.max * unit_deg;
     if (unit_deg < 0) std::swap(signal.min_deg, signal.max_deg);
+    for (double* bound_deg : {&signal.min_deg, &signal.max_deg})
+        *bound_deg = std::clamp(*bound_deg, -kLargestAngle_deg, kLargestAngle_deg);
 }
 
 // Letters to change, insert or leave out; of long names the beginnings count.
@@ -132,6 +138,10 @@ Checked<HitchAngleSignal> HitchAngleOf(const DbcMessage& message, const DbcSigna
     auto multiplexor = MultiplexorOf(message, dbc);
     if (!multiplexor) return multiplexor.error();
     if (dbc.factor == 0) return "a signal whose factor is other than 0 " + Named(dbc);
+    if (std::abs(dbc.factor * unit_deg) > kLargestFactor_deg ||
+        std::abs(dbc.offset * unit_deg) > kLargestOffset_deg)
+        return "a signal with a factor of at most 1000 and an offset of at most 100000 degrees " +
+               Named(dbc);
     HitchAngleSignal signal{.id = message.id,
                             .start_bit = field.value().start_bit,
                             .length_bits = field.value().length_bits,
@@ -145,7 +155,7 @@ Checked<HitchAngleSignal> HitchAngleOf(const DbcMessage& message, const DbcSigna
                             .multiplexor = multiplexor.value()};
     TakeRange(dbc, unit_deg, signal);
     if (message.cycle_time)
-        signal.max_age = std::max(kCyclesOfAge * *message.cycle_time, kLeastAge);
+        signal.max_age = std::clamp(kCyclesOfAge * *message.cycle_time, kLeastAge, kMostAge);
     return signal;
 }
 

@@ -21,9 +21,10 @@ std::optional<double> DegreesIn(const std::string& unit);
 /// names of angles.
 HitchAngleCodes CodesOf(const DbcSignal& signal);
 
-/// Layout, factor, offset, codes, multiplexor, range and age (five cycles, at least 100 ms) of the
-/// angle. `unit_deg`: degrees in one unit of its physical values. A range that the file does not
-/// tell and a cycle that it does not tell stay the defaults.
+/// Layout, factor, offset, codes, multiplexor, range (as far as it lies within 360 degrees to each
+/// side) and age (five cycles, at least 100 ms, at most a minute) of the angle, all within what
+/// HitchAngleSignal allows. `unit_deg`: degrees in one unit of its physical values. A range that
+/// the file does not tell and a cycle that it does not tell stay the defaults.
 hal::Checked<HitchAngleSignal> HitchAngleOf(const DbcMessage& message, const DbcSignal& signal,
                                             double unit_deg);
 

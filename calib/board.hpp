@@ -55,6 +55,8 @@ ParsedBoard ParseBoard(std::string_view text);
 /// A file that describes a board; strict. The error has one line
 /// `file:line: key is VALUE, must be ...` for each mistake. Throws nothing.
 ParsedBoard LoadBoard(const std::filesystem::path& file);
+/// The same of a file's content. `name`: what complaints call the file.
+ParsedBoard ParseBoardFile(const std::string& text, const std::string& name);
 
 /// Writes such a file, in one step: a reader sees the old or the new content, whole. Empty on
 /// success, otherwise what went wrong. Throws nothing.

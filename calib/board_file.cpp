@@ -39,6 +39,13 @@ void ReadKeys(YamlMap& root, Board& board) {
     root.Finish();
 }
 
+ParsedBoard ReadWhole(YamlMap root, const YamlComplaints& complaints) {
+    Board board;
+    ReadKeys(root, board);
+    if (complaints.empty()) return {.board = board};
+    return {.error = complaints.Text()};
+}
+
 std::string Text(const Board& board) {
     std::string text = "schema: 1\npattern: " + std::string(ToString(board.pattern)) +
                        "\ncolumns: " + std::to_string(board.columns) +
@@ -69,11 +76,12 @@ std::string_view ToString(Pattern pattern) {
 
 ParsedBoard LoadBoard(const std::filesystem::path& file) {
     YamlComplaints complaints(file.string());
-    YamlMap root = LoadYaml(file, complaints);
-    Board board;
-    ReadKeys(root, board);
-    if (complaints.empty()) return {.board = board};
-    return {.error = complaints.Text()};
+    return ReadWhole(LoadYaml(file, complaints), complaints);
+}
+
+ParsedBoard ParseBoardFile(const std::string& text, const std::string& name) {
+    YamlComplaints complaints(name);
+    return ReadWhole(ParseYaml(text, complaints), complaints);
 }
 
 std::string SaveBoard(const Board& board, const std::filesystem::path& file) {

@@ -24,6 +24,14 @@ ForeignCameras Read(Format format, YamlMap& root, const ImportHints& hints,
     return ReadKalibr(root, hints);
 }
 
+ForeignCameras ReadWhole(Format format, YamlMap& root, const YamlComplaints& complaints,
+                         const std::filesystem::path& file, const ImportHints& hints) {
+    if (!complaints.empty()) return {.error = complaints.Text()};
+    ForeignCameras read = Read(format, root, hints, AsName(file.stem().string(), "camera"));
+    if (!complaints.empty()) return {.error = complaints.Text()};
+    return read;
+}
+
 const char* Extension(Format format) {
     return format == Format::kMrcal ? ".cameramodel" : ".yaml";
 }
@@ -64,10 +72,14 @@ ForeignCameras ImportCameras(Format format, const std::filesystem::path& file,
                              const ImportHints& hints) {
     YamlComplaints complaints(file.string());
     YamlMap root = LoadForeign(format, file, complaints);
-    if (!complaints.empty()) return {.error = complaints.Text()};
-    ForeignCameras read = Read(format, root, hints, AsName(file.stem().string(), "camera"));
-    if (!complaints.empty()) return {.error = complaints.Text()};
-    return read;
+    return ReadWhole(format, root, complaints, file, hints);
+}
+
+ForeignCameras ParseCameras(Format format, const std::string& text,
+                            const std::filesystem::path& file, const ImportHints& hints) {
+    YamlComplaints complaints(file.string());
+    YamlMap root = ParseForeign(format, text, complaints);
+    return ReadWhole(format, root, complaints, file, hints);
 }
 
 ExportedFiles ExportLens(Format format, const std::string& name, const algo::CameraModel& model) {

@@ -43,6 +43,9 @@ struct ImportHints {
 /// lens and place are passed over.
 ForeignCameras ImportCameras(Format format, const std::filesystem::path& file,
                              const ImportHints& hints);
+/// The same of a file's content. `file`: what complaints call it, and cameras without a name.
+ForeignCameras ParseCameras(Format format, const std::string& text,
+                            const std::filesystem::path& file, const ImportHints& hints);
 
 /// A file to be written.
 struct ForeignFile {

@@ -180,11 +180,15 @@ std::string PythonAsYaml(const std::string& python) {
 
 YamlMap LoadForeign(Format format, const std::filesystem::path& file, YamlComplaints& complaints) {
     const auto text = FileText(file);
-    if (!text) {
-        complaints.Add(0, "the file cannot be read, must be a readable file");
-    } else if (text->size() > kMaxFileBytes) {
+    if (text) return ParseForeign(format, *text, complaints);
+    complaints.Add(0, "the file cannot be read, must be a readable file");
+    return {std::nullopt, YamlPlace{}};
+}
+
+YamlMap ParseForeign(Format format, const std::string& text, YamlComplaints& complaints) {
+    if (text.size() > kMaxFileBytes) {
         complaints.Add(0, "the file is too long, must be at most 16 MiB");
-    } else if (const auto yaml = AsYaml(format, *text, complaints)) {
+    } else if (const auto yaml = AsYaml(format, text, complaints)) {
         return ParseYaml(*yaml, complaints);
     }
     return {std::nullopt, YamlPlace{}};

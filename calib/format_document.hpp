@@ -13,6 +13,8 @@ namespace hitchview::calib {
 /// literal. What is wrong goes into `complaints`, with the file's own line numbers. At most 16 MiB.
 /// Throws nothing.
 YamlMap LoadForeign(Format format, const std::filesystem::path& file, YamlComplaints& complaints);
+/// The same of a file's content.
+YamlMap ParseForeign(Format format, const std::string& text, YamlComplaints& complaints);
 
 /// OpenCV's XML as YAML with each value on the line where it was; empty: it is not such XML.
 std::optional<std::string> XmlAsYaml(const std::string& xml);

@@ -47,11 +47,7 @@ void PassOver(YamlMap& root) {
     (void)root["sigma"];
 }
 
-}  // namespace
-
-LoadedLens LoadLens(const std::filesystem::path& file) {
-    YamlComplaints complaints(file.string());
-    YamlMap root = LoadYaml(file, complaints);
+LoadedLens ReadWhole(YamlMap root, const YamlComplaints& complaints) {
     LoadedLens loaded;
     int schema = 1;
     std::string written_by;
@@ -67,6 +63,18 @@ LoadedLens LoadLens(const std::filesystem::path& file) {
         loaded.error = complaints.Text();
     }
     return loaded;
+}
+
+}  // namespace
+
+LoadedLens LoadLens(const std::filesystem::path& file) {
+    YamlComplaints complaints(file.string());
+    return ReadWhole(LoadYaml(file, complaints), complaints);
+}
+
+LoadedLens ParseLens(const std::string& text, const std::string& name) {
+    YamlComplaints complaints(name);
+    return ReadWhole(ParseYaml(text, complaints), complaints);
 }
 
 std::string SaveLens(const Intrinsics& intrinsics, const std::string& written_by,

@@ -18,6 +18,8 @@ struct LoadedLens {
 
 /// Strict. Throws nothing.
 LoadedLens LoadLens(const std::filesystem::path& file);
+/// The same of a file's content. `name`: what complaints call the file.
+LoadedLens ParseLens(const std::string& text, const std::string& name);
 
 /// Writes the lens with its verdict, quality, standard deviations and `written_by` (command, build
 /// and date), in one step: a reader sees the old or the new content, whole. Empty on success,

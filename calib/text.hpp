@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
@@ -10,6 +11,13 @@ template <typename... Values>
 std::string Sentence(const char* format, Values... values) {
     char text[401];
     std::snprintf(text, sizeof text, format, values...);
+    return text;
+}
+
+/// With ? in place of line ends and of what else has no letter.
+inline std::string OneLine(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }, '?');
     return text;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "calib/text.hpp"
 #include "calib/yaml_document.hpp"
 
 namespace hitchview::calib {
@@ -20,9 +21,7 @@ int LineOf(const YAML::Node& node) {
 /// Text as it may stand in a message: one line, bounded.
 std::string Shown(std::string text) {
     if (text.size() > kMaxShownBytes) text = text.substr(0, kMaxShownBytes) + "...";
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }, '?');
-    return text;
+    return OneLine(std::move(text));
 }
 
 bool IsQuoted(const YAML::Node& scalar) {
@@ -195,7 +194,8 @@ YamlMap::YamlMap(const std::optional<YAML::Node>& map, YamlPlace place) : place_
 YamlPlace YamlMap::PlaceOf(const std::string& key) const {
     const auto entry = entries_.find(key);
     const int line = entry == entries_.end() ? place_.line : entry->second.line;
-    return {line, place_.path.empty() ? key : place_.path + '.' + key, place_.complaints};
+    const std::string shown = Shown(key);
+    return {line, place_.path.empty() ? shown : place_.path + '.' + shown, place_.complaints};
 }
 
 YamlValue YamlMap::Value(std::string_view key, bool required) {
@@ -210,8 +210,8 @@ void YamlMap::Finish() const {
     if (place_.complaints == nullptr) return;
     for (const std::string& key : keys_) {
         if (Contains(asked_for_, key)) continue;
-        const YamlPlace place = PlaceOf(Shown(key));
-        place_.complaints->Add(PlaceOf(key).line,
+        const YamlPlace place = PlaceOf(key);
+        place_.complaints->Add(place.line,
                                place.path + " is no key, must be one of " + Joined(asked_for_));
     }
 }

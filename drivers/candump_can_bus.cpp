@@ -187,8 +187,14 @@ Checked<std::unique_ptr<CandumpCanBus>> CandumpCanBus::Open(const std::filesyste
                                                             Instant start, Kinds kinds) {
     std::string text;
     if (auto read = ReadText(file, text); !read) return read.error();
+    return Parse(std::move(text), file.string(), start, kinds);
+}
+
+Checked<std::unique_ptr<CandumpCanBus>> CandumpCanBus::Parse(std::string text,
+                                                             const std::string& name, Instant start,
+                                                             Kinds kinds) {
     std::unique_ptr<CandumpCanBus> self(new CandumpCanBus(std::move(text), kinds));
-    if (auto checked = self->Check(file.string(), start); !checked) return checked.error();
+    if (auto checked = self->Check(name, start); !checked) return checked.error();
     return self;
 }
 

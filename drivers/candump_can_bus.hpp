@@ -49,6 +49,12 @@ class CandumpCanBus final : public hal::CanBus {
                                                              hal::Instant start,
                                                              Kinds kinds = Kinds::kData);
 
+    /// The same of a file's content. `name`: what the error calls the file.
+    static hal::Checked<std::unique_ptr<CandumpCanBus>> Parse(std::string text,
+                                                              const std::string& name,
+                                                              hal::Instant start,
+                                                              Kinds kinds = Kinds::kData);
+
     /// Constant; any thread.
     [[nodiscard]] const LogCounts& log_counts() const { return log_counts_; }
 

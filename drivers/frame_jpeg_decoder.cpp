@@ -118,6 +118,7 @@ void FrameJpegDecoder::Library::DecodePicture(std::span<const std::uint8_t> jpeg
 }
 
 void FrameJpegDecoder::Library::Begin(std::span<const std::uint8_t> jpeg) {
+    memory->Forget();
     jpeg_mem_src(&decompressor, jpeg.data(), static_cast<unsigned long>(jpeg.size()));
     jpeg_read_header(&decompressor, TRUE);
     RefuseOthers();

@@ -2,6 +2,7 @@
 
 #include <jerror.h>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace hitchview::drivers {
@@ -41,6 +42,14 @@ FrameJpegMemory::FrameJpegMemory(jpeg_decompress_struct& decompressor)
 
 FrameJpegMemory::~FrameJpegMemory() {
     decompressor_.mem = original_;
+}
+
+void FrameJpegMemory::Forget() {
+    decompressor_.src = nullptr;
+    std::ranges::fill(decompressor_.quant_tbl_ptrs, nullptr);
+    std::ranges::fill(decompressor_.dc_huff_tbl_ptrs, nullptr);
+    std::ranges::fill(decompressor_.ac_huff_tbl_ptrs, nullptr);
+    lasting_.used = 0;
 }
 
 FrameJpegMemory& FrameJpegMemory::Of(j_common_ptr decompressor) {

@@ -18,8 +18,13 @@ class FrameJpegMemory : private jpeg_memory_mgr {
     /// `decompressor` must outlive this memory, and gets its own memory back at the end.
     explicit FrameJpegMemory(jpeg_decompress_struct& decompressor);
     ~FrameJpegMemory();
+
     FrameJpegMemory(const FrameJpegMemory&) = delete;
     FrameJpegMemory& operator=(const FrameJpegMemory&) = delete;
+
+    /// Before each picture: what it does not bring along, tables above all, it does not get from
+    /// the picture before it.
+    void Forget();
 
  private:
     /// Blocks one above the other, given back all at once.

@@ -29,7 +29,6 @@ constexpr int kMostProperties = 64;
 constexpr int kMostCameras = 32;
 constexpr std::int8_t kWorstQuality = HITCHVIEW_HITCH_ANGLE_T_QUALITY_STALE;
 constexpr std::int8_t kBestSeam = HITCHVIEW_PANORAMA_STATUS_T_SEAM_LOCKED;
-constexpr std::int8_t kLastKind = HITCHVIEW_CAN_FRAME_T_KIND_ERROR;
 
 template <typename Int>
 std::optional<Int> Number(std::string_view text) {
@@ -72,16 +71,16 @@ bool IsUpTo(T value, T largest) {
 bool HasSoundId(const hal::CanFrame& frame) {
     constexpr std::uint32_t kStandard = 0x7FF;
     constexpr std::uint32_t kExtended = 0x1FFFFFFF;
-    return frame.id <= (frame.extended ? kExtended : kStandard) ||
-           frame.kind == hal::CanFrameKind::kError;
+    const bool longer = frame.extended || frame.kind == hal::CanFrameKind::kError;
+    return frame.id <= (longer ? kExtended : kStandard);
 }
 
 /// Whether a CAN frame of the message can have been on a bus.
 bool IsSound(const hal::CanFrame& frame, std::size_t data_bytes) {
     const std::size_t largest = frame.fd ? 64 : 8;
     const bool remote = frame.kind == hal::CanFrameKind::kRemote;
-    return HasSoundId(frame) && frame.fd_flags <= 15 && frame.size_bytes <= largest &&
-           data_bytes == (remote ? 0 : frame.size_bytes);
+    return frame.kind <= hal::CanFrameKind::kError && HasSoundId(frame) && frame.fd_flags <= 15 &&
+           frame.size_bytes <= largest && data_bytes == (remote ? 0 : frame.size_bytes);
 }
 
 hal::CanFrame TakeCanFrame(LcmMessageReader& reader) {
@@ -155,7 +154,7 @@ Result<LoggedCanFrame> ParseLoggedCanFrame(std::span<const std::uint8_t> message
     hal::CanFrame frame = TakeCanFrame(reader);
     const auto data = reader.TakeBytes(reader.Take<std::int8_t>());
     const bool sound = reader.at_end() && IsSound(frame, data.size()) && IsEpoch(utime_us) &&
-                       IsInstant(received_at) && static_cast<std::int8_t>(frame.kind) <= kLastKind;
+                       IsInstant(received_at);
     if (!sound) return Error::kCorrupted;
     frame.received_at = received_at;
     frame.epoch = std::chrono::microseconds(utime_us);

@@ -17,7 +17,7 @@ namespace hitchview::drivers {
 // Messages of a log, read without trust: types in lcmtypes/ say what the values mean. All parsers:
 // what they return borrows the message; kCorrupted: wrong type, a count or length that is negative
 // or reaches past the end, bytes left over, or a value outside its range (times since the epoch
-// up to the year 2286, CLOCK_MONOTONIC up to a century).
+// up to the year 2255, CLOCK_MONOTONIC up to a century).
 
 /// What a message says that it is, by the fingerprint that it begins with.
 enum class LoggedKind {

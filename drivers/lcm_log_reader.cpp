@@ -43,6 +43,11 @@ hal::Checked<std::unique_ptr<LcmLogReader>> LcmLogReader::Open(const std::filesy
     return std::unique_ptr<LcmLogReader>(new LcmLogReader(std::move(*window), options));
 }
 
+LcmLogReader::LcmLogReader(std::span<const std::uint8_t> log, const LcmLogReaderOptions& options)
+    : LcmLogReader(std::make_unique<LcmLogWindow>(log), options) {
+    HV_EXPECT(options.max_data_bytes > 0);
+}
+
 Result<LcmLogEvent> LcmLogReader::Next() {
     const std::optional<Place> place = Find(position_);
     if (window_->failed()) return Error::kFailed;

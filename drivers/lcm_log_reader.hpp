@@ -42,6 +42,9 @@ class LcmLogReader {
     /// The error names the file and says why.
     static hal::Checked<std::unique_ptr<LcmLogReader>> Open(
         const std::filesystem::path& file, const LcmLogReaderOptions& options = {});
+    /// The same of a file's content, which is borrowed.
+    explicit LcmLogReader(std::span<const std::uint8_t> log,
+                          const LcmLogReaderOptions& options = {});
 
     /// Borrowed until the next call. kEndOfStream: no further event. kFailed: the system refused to
     /// read, or the file became shorter.

@@ -26,8 +26,11 @@ hal::Checked<std::unique_ptr<LcmLogWindow>> LcmLogWindow::Open(const std::string
 LcmLogWindow::LcmLogWindow(int descriptor, std::uint64_t size_bytes)
     : descriptor_(descriptor), size_bytes_(size_bytes), memory_(kBytes) {}
 
+LcmLogWindow::LcmLogWindow(std::span<const std::uint8_t> bytes)
+    : descriptor_(-1), size_bytes_(bytes.size()), held_(bytes) {}
+
 LcmLogWindow::~LcmLogWindow() {
-    close(descriptor_);
+    if (descriptor_ >= 0) close(descriptor_);
 }
 
 std::span<const std::uint8_t> LcmLogWindow::Lend(std::uint64_t offset, std::size_t count) {
@@ -35,12 +38,12 @@ std::span<const std::uint8_t> LcmLogWindow::Lend(std::uint64_t offset, std::size
     if (offset > size_bytes_ || count > size_bytes_ - offset) return {};
     if (memory_.size() < count) memory_.resize(count);
     const std::uint64_t wanted = std::max(count, kBytes);
-    held_bytes_ = static_cast<std::size_t>(std::min(wanted, size_bytes_ - offset));
+    const auto piece =
+        std::span(memory_).first(static_cast<std::size_t>(std::min(wanted, size_bytes_ - offset)));
     start_ = offset;
-    if (!Read(offset, std::span(memory_).first(held_bytes_))) {
-        held_bytes_ = 0;
-        return {};
-    }
+    held_ = {};
+    if (!Read(offset, piece)) return {};
+    held_ = piece;
     return Held(offset, count);
 }
 
@@ -70,12 +73,12 @@ std::optional<std::uint64_t> LcmLogWindow::Find(std::span<const std::uint8_t> pa
 }
 
 bool LcmLogWindow::Holds(std::uint64_t offset, std::size_t count) const {
-    return offset >= start_ && offset - start_ <= held_bytes_ &&
-           count <= held_bytes_ - (offset - start_);
+    return offset >= start_ && offset - start_ <= held_.size() &&
+           count <= held_.size() - (offset - start_);
 }
 
 std::span<const std::uint8_t> LcmLogWindow::Held(std::uint64_t offset, std::size_t count) const {
-    return std::span(memory_).subspan(static_cast<std::size_t>(offset - start_), count);
+    return held_.subspan(static_cast<std::size_t>(offset - start_), count);
 }
 
 bool LcmLogWindow::Read(std::uint64_t offset, std::span<std::uint8_t> bytes) {

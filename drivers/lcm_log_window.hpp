@@ -13,13 +13,16 @@
 namespace hitchview::drivers {
 
 /// A file of which a piece is in memory: reading along it costs one call of the system for each
-/// megabyte, and what was read is lent without a copy. Thread: one.
+/// megabyte, and what was read is lent without a copy. Or bytes that are all in memory. Thread:
+/// one.
 class LcmLogWindow {
  public:
     static constexpr std::size_t kBytes = std::size_t{1} << 20;
 
     /// The error names the file and says why.
     static hal::Checked<std::unique_ptr<LcmLogWindow>> Open(const std::string& file);
+    /// Borrows the bytes. Takes no memory for them.
+    explicit LcmLogWindow(std::span<const std::uint8_t> bytes);
     ~LcmLogWindow();
     LcmLogWindow(const LcmLogWindow&) = delete;
     LcmLogWindow& operator=(const LcmLogWindow&) = delete;
@@ -46,11 +49,11 @@ class LcmLogWindow {
     [[nodiscard]] std::span<const std::uint8_t> Held(std::uint64_t offset, std::size_t count) const;
     bool Read(std::uint64_t offset, std::span<std::uint8_t> bytes);
 
-    int descriptor_;
+    int descriptor_;  ///< -1: all bytes are held
     std::uint64_t size_bytes_;
-    std::vector<std::uint8_t> memory_;
-    std::uint64_t start_ = 0;     ///< of the piece in memory
-    std::size_t held_bytes_ = 0;  ///< of the piece
+    std::vector<std::uint8_t> memory_{};
+    std::uint64_t start_ = 0;               ///< of the piece that is held
+    std::span<const std::uint8_t> held_{};  ///< the piece
     bool failed_ = false;
 };
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 namespace hitchview::drivers {
 namespace {
@@ -40,26 +41,31 @@ std::string_view WithoutZeros(std::string_view digits) {
     return digits.substr(std::min(digits.find_first_not_of('0'), digits.size()));
 }
 
-// Numbers by their value, everything else by its bytes.
-bool NaturallyBefore(std::string_view a, std::string_view b) {
+// Numbers by their value, everything else by its bytes. Below 0: a comes first.
+int NaturalOrder(std::string_view a, std::string_view b) {
     while (!a.empty() && !b.empty()) {
         const std::string_view part_a = TakePart(a);
         const std::string_view part_b = TakePart(b);
         if (IsDigit(part_a.front()) && IsDigit(part_b.front())) {
             const std::string_view value_a = WithoutZeros(part_a);
             const std::string_view value_b = WithoutZeros(part_b);
-            if (value_a.size() != value_b.size()) return value_a.size() < value_b.size();
-            if (value_a != value_b) return value_a < value_b;
+            if (value_a.size() != value_b.size()) return value_a.size() < value_b.size() ? -1 : 1;
+            if (value_a != value_b) return value_a.compare(value_b);
         } else if (part_a != part_b) {
-            return part_a < part_b;
+            return part_a.compare(part_b);
         }
     }
-    return a.size() < b.size();
+    return static_cast<int>(b.empty()) - static_cast<int>(a.empty());
 }
 
-// File name before and after the number, and how many digits the number has at least.
+// However the folder lists them: 01.png and 1.png are the same number.
+bool NaturallyBefore(const std::string& a, const std::string& b) {
+    const int order = NaturalOrder(a, b);
+    return order < 0 || (order == 0 && a < b);
+}
+
+// A file's name before and after the number, and how many digits the number has at least.
 struct Pattern {
-    fs::path folder;
     std::string before;
     std::string after;
     std::size_t digits = 1;
@@ -67,11 +73,10 @@ struct Pattern {
 
 // One `%d` or `%0Nd` with N from 1 to 9, and no other percent sign.
 std::optional<Pattern> ParsePattern(const std::string& text) {
-    const fs::path path(text);
-    const std::string name = path.filename().string();
+    const std::string name = fs::path(text).filename().string();
     const std::size_t percent = name.find('%');
     if (percent == std::string::npos || percent != name.rfind('%')) return std::nullopt;
-    Pattern pattern{path.parent_path(), name.substr(0, percent), {}};
+    Pattern pattern{.before = name.substr(0, percent), .after = {}};
     std::string_view number = std::string_view(name).substr(percent + 1);
     if (number.size() > 2 && number[0] == '0' && number[1] != '0' && IsDigit(number[1])) {
         pattern.digits = static_cast<std::size_t>(number[1] - '0');
@@ -98,25 +103,39 @@ std::optional<unsigned> NumberIn(std::string_view name, const Pattern& pattern) 
     return number;
 }
 
-std::map<unsigned, std::string> FindNumbered(const Pattern& pattern) {
+std::map<unsigned, std::string> FindNumbered(const std::vector<std::string>& paths,
+                                             const Pattern& pattern) {
     std::map<unsigned, std::string> found;
-    std::error_code error;
-    const fs::path folder = pattern.folder.empty() ? fs::path(".") : pattern.folder;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-        const auto maybe_number = NumberIn(entry.path().filename().string(), pattern);
-        if (maybe_number) found.emplace(*maybe_number, entry.path().string());
+    for (const std::string& path : paths) {
+        const auto maybe_number = NumberIn(fs::path(path).filename().string(), pattern);
+        if (maybe_number) found.emplace(*maybe_number, path);
     }
     return found;
+}
+
+std::vector<std::string> PathsIn(const fs::path& folder, std::error_code& error) {
+    std::vector<std::string> paths;
+    fs::directory_iterator entry(folder, error);
+    for (; !error && entry != fs::directory_iterator(); entry.increment(error))
+        paths.push_back(entry->path().string());
+    return paths;
 }
 
 }  // namespace
 
 hal::Checked<std::vector<std::string>> ListPattern(const std::string& text) {
+    std::error_code absent;
+    const fs::path folder = fs::path(text).parent_path();
+    return PickPattern(text, PathsIn(folder.empty() ? fs::path(".") : folder, absent));
+}
+
+hal::Checked<std::vector<std::string>> PickPattern(const std::string& text,
+                                                   const std::vector<std::string>& all) {
     const std::optional<Pattern> maybe_pattern = ParsePattern(text);
     if (!maybe_pattern) {
         return text + ": the file name must have one number, written %d or %01d to %09d";
     }
-    const std::map<unsigned, std::string> found = FindNumbered(*maybe_pattern);
+    const std::map<unsigned, std::string> found = FindNumbered(all, *maybe_pattern);
     if (found.empty()) return text + ": no such files";
     if (found.begin()->first > 1) {
         return text + ": the first number is " + std::to_string(found.begin()->first) +
@@ -136,12 +155,15 @@ hal::Checked<std::vector<std::string>> ListPattern(const std::string& text) {
 }
 
 hal::Checked<std::vector<std::string>> ListFolder(const std::string& folder) {
-    std::vector<std::string> paths;
     std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-        if (IsPicture(entry.path())) paths.push_back(entry.path().string());
-    }
+    std::vector<std::string> paths = PathsIn(folder, error);
     if (error) return folder + ": " + error.message();
+    return PickPictures(folder, std::move(paths));
+}
+
+hal::Checked<std::vector<std::string>> PickPictures(const std::string& folder,
+                                                    std::vector<std::string> paths) {
+    std::erase_if(paths, [](const std::string& path) { return !IsPicture(path); });
     if (paths.empty()) return folder + ": no pictures in this folder";
     std::ranges::sort(paths, NaturallyBefore);
     return paths;

@@ -14,4 +14,10 @@ hal::Checked<std::vector<std::string>> ListPattern(const std::string& pattern);
 /// Pictures of a folder in natural order of their names: 2.png before 10.png. At least one path.
 hal::Checked<std::vector<std::string>> ListFolder(const std::string& folder);
 
+/// The same, of a folder in which are these paths.
+hal::Checked<std::vector<std::string>> PickPattern(const std::string& pattern,
+                                                   const std::vector<std::string>& paths);
+hal::Checked<std::vector<std::string>> PickPictures(const std::string& folder,
+                                                    std::vector<std::string> paths);
+
 }  // namespace hitchview::drivers

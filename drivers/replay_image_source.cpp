@@ -21,21 +21,18 @@ cv::Mat ReadBgr(const std::string& path) {
 class ImageSource final : public ReplaySource {
  public:
     ImageSource(std::vector<std::string> paths, cv::Size size)
-        : ReplaySource(size.width, size.height, 0), paths_(std::move(paths)), size_(size) {}
+        : ReplaySource(size.width, size.height, 0),
+          paths_(std::move(paths)),
+          size_(size),
+          jpeg_(size.width, size.height) {}
 
  private:
     hal::Result<hal::Done> DoRead(std::span<std::uint8_t> nv12) override {
         if (next_ == paths_.size()) return hal::Error::kEndOfStream;
         const std::string& path = paths_[next_++];
-        const JpegDecoder::Outcome outcome = jpeg_.Decode(path);
+        const JpegDecoder::Outcome outcome = jpeg_.DecodeFile(path);
         if (outcome == JpegDecoder::Outcome::kDamaged) return hal::Error::kCorrupted;
-        return outcome == JpegDecoder::Outcome::kDecoded ? TakeJpeg(nv12) : TakeOther(path, nv12);
-    }
-
-    hal::Result<hal::Done> TakeJpeg(std::span<std::uint8_t> nv12) {
-        if (jpeg_.width_px() != size_.width || jpeg_.height_px() != size_.height) {
-            return hal::Error::kCorrupted;
-        }
+        if (outcome == JpegDecoder::Outcome::kNotForUs) return TakeOther(path, nv12);
         ToNv12(jpeg_.picture(), format(), nv12);
         return hal::Done{};
     }

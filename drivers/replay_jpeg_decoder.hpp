@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,22 +11,23 @@
 
 namespace hitchview::drivers {
 
-/// JPEG files straight to their YCbCr planes, without a detour over RGB.
+/// JPEG files of one size straight to their YCbCr planes, without a detour over RGB.
 class JpegDecoder {
  public:
     enum class Outcome {
         kDecoded,
         kNotForUs,  ///< no JPEG, or one of a rare kind: other colours, other sampling
-        kDamaged,   ///< unreadable, cut short or with broken data
+        kDamaged,   ///< unreadable, cut short, with broken data or of another size
     };
 
-    JpegDecoder();
+    JpegDecoder(int width_px, int height_px);
 
-    Outcome Decode(const std::string& path);
+    /// At most 256 MiB.
+    Outcome DecodeFile(const std::string& path);
+    /// The same of a file's content.
+    Outcome Decode(std::span<const std::uint8_t> jpeg);
 
-    /// Of the last picture decoded; valid until the next Decode.
-    [[nodiscard]] int width_px() const { return width_px_; }
-    [[nodiscard]] int height_px() const { return height_px_; }
+    /// The last one decoded; valid until the next Decode.
     [[nodiscard]] const YuvPicture& picture() const { return picture_; }
 
  private:
@@ -34,14 +36,14 @@ class JpegDecoder {
     };
 
     bool ReadFile(const std::string& path);
-    bool DecodePlanes(int subsampling);
+    bool DecodePlanes(std::span<const std::uint8_t> jpeg, int subsampling);
 
+    int width_px_;
+    int height_px_;
     std::unique_ptr<void, Destroy> handle_;
     std::vector<std::uint8_t> file_;
     std::array<std::vector<std::uint8_t>, 3> planes_;
     YuvPicture picture_{};
-    int width_px_ = 0;
-    int height_px_ = 0;
 };
 
 }  // namespace hitchview::drivers

@@ -21,10 +21,13 @@ CanFrameKind KindOf(canid_t id) {
     return (id & CAN_RTR_FLAG) != 0 ? CanFrameKind::kRemote : CanFrameKind::kData;
 }
 
-// A stamp that was not taken is 0.
+// A stamp that was not taken is 0; one beyond the year 2100 is none either.
 std::optional<Instant> Given(const timespec& time) {
-    const Instant instant = InstantOf(time);
-    return instant.count() == 0 ? std::nullopt : std::optional(instant);
+    constexpr std::int64_t kMostSeconds = 4'102'444'800;
+    const bool taken = time.tv_sec != 0 || time.tv_nsec != 0;
+    const bool sound = time.tv_sec >= 0 && time.tv_sec < kMostSeconds && time.tv_nsec >= 0 &&
+                       time.tv_nsec < 1'000'000'000;
+    return taken && sound ? std::optional(InstantOf(time)) : std::nullopt;
 }
 
 }  // namespace
@@ -42,8 +45,21 @@ int SocketCanMessage::Receive(int socket) {
         header_.msg_controllen = 0;
         return errno;
     }
-    fd_ = bytes == CANFD_MTU;
-    return fd_ || bytes == CAN_MTU ? 0 : EBADMSG;
+    return Accept(static_cast<std::size_t>(bytes));
+}
+
+int SocketCanMessage::Take(std::span<const std::uint8_t> frame,
+                           std::span<const std::uint8_t> control) {
+    header_.msg_controllen = std::min(control.size(), control_.size());
+    std::ranges::copy(std::as_bytes(control).first(header_.msg_controllen), control_.begin());
+    std::ranges::copy(std::as_bytes(frame).first(std::min(frame.size(), sizeof frame_)),
+                      reinterpret_cast<std::byte*>(&frame_));
+    return Accept(frame.size());
+}
+
+int SocketCanMessage::Accept(std::size_t frame_bytes) {
+    fd_ = frame_bytes == CANFD_MTU;
+    return fd_ || frame_bytes == CAN_MTU ? 0 : EBADMSG;
 }
 
 hal::CanFrame SocketCanMessage::frame() const {
@@ -84,7 +100,9 @@ const cmsghdr* SocketCanMessage::Find(int type, std::size_t bytes) const {
     msghdr header = header_;  // the macros want one that they could write to
     for (cmsghdr* one = CMSG_FIRSTHDR(&header); one != nullptr; one = CMSG_NXTHDR(&header, one)) {
         const bool wanted = one->cmsg_level == SOL_SOCKET && one->cmsg_type == type;
-        if (wanted && one->cmsg_len >= CMSG_LEN(bytes)) return one;
+        const auto at = reinterpret_cast<const std::byte*>(one) - control_.data();
+        const bool whole = header_.msg_controllen - static_cast<std::size_t>(at) >= CMSG_LEN(bytes);
+        if (wanted && whole && one->cmsg_len >= CMSG_LEN(bytes)) return one;
     }
     return nullptr;
 }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "drivers/socketcan_time.hpp"
 #include "hal/can_bus.hpp"
@@ -22,6 +23,9 @@ class SocketCanMessage {
 
     /// Does not wait. 0, or errno: EAGAIN when there is none, EBADMSG when it is no CAN frame.
     int Receive(int socket);
+    /// The same of a frame and what is said about it that came in another way; at most as much as a
+    /// socket gives is taken of each.
+    int Take(std::span<const std::uint8_t> frame, std::span<const std::uint8_t> control);
 
     /// received_at is left open.
     [[nodiscard]] hal::CanFrame frame() const;
@@ -36,6 +40,7 @@ class SocketCanMessage {
  private:
     static constexpr std::size_t kControlBytes = 256;
 
+    int Accept(std::size_t frame_bytes);
     [[nodiscard]] const cmsghdr* Find(int type, std::size_t bytes) const;
 
     canfd_frame frame_{};

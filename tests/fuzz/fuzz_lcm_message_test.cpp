@@ -1,9 +1,9 @@
-#include "tests/fuzz/fuzz_lcm_message.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "tests/fuzz/fuzz_corpus.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 #include "tests/support/health_message.hpp"
 #include "tests/support/image_message.hpp"
 
@@ -47,6 +47,10 @@ TEST(FuzzLcmMessageTest, NoRandomBytesBreakAPromise) {
         for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
         EXPECT_EQ(LLVMFuzzerTestOneInput(bytes.data(), bytes.size()), 0);
     }
+}
+
+TEST(FuzzLcmMessageTest, NoFileOfTheCorpusAndNoMutationOfOneBreaksAPromise) {
+    RunCorpus("lcm_message", 50'000);
 }
 
 }  // namespace

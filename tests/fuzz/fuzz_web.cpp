@@ -1,5 +1,3 @@
-#include "tests/fuzz/fuzz_web.hpp"
-
 #include <array>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,6 +6,7 @@
 #include "app/web_request.hpp"
 #include "app/web_state.hpp"
 #include "hal/expect.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 
 namespace {
 

@@ -1,11 +1,11 @@
-#include "tests/fuzz/fuzz_web.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
 #include <string>
 #include <vector>
 
+#include "tests/fuzz/fuzz_corpus.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 #include "tests/support/rig_messages.hpp"
 
 namespace hitchview::tests {
@@ -50,6 +50,10 @@ TEST(FuzzWebTest, NoMutationOfARequestBreaksAPromise) {
             LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()),
             0);
     }
+}
+
+TEST(FuzzWebTest, NoFileOfTheCorpusAndNoMutationOfOneBreaksAPromise) {
+    RunCorpus("web", 2000);
 }
 
 }  // namespace

@@ -9,6 +9,17 @@ namespace {
 
 using algo::Unit;
 
+/// Each line stands for ten times the one before.
+std::string AliasesOfAliases(char lines) {
+    std::string text = "a: &a [1]\n";
+    for (char name = 'b'; name < 'a' + lines; ++name) {
+        text.append(1, name).append(": &").append(1, name).append(" [");
+        for (int k = 0; k < 10; ++k) text.append("*").append(1, static_cast<char>(name - 1)) += ',';
+        text.append("]\n");
+    }
+    return text;
+}
+
 const std::string kPlane =
     "schema: 1\n"
     "canvas: {projection: plane, size_px: [1100, 520]}\n"
@@ -43,6 +54,14 @@ class ConfigTest : public testing::Test {
 
     tests::TemporaryFolder folder_;
 };
+
+TEST_F(ConfigTest, AnAliasStandsForWhatItNames) {
+    const auto config = Load(kPlane +
+                             "publish: {max_bytes: &most 30000, viewports: [{name: a, "
+                             "columns_px: [0, 64], max_bytes: *most}]}\n");
+    ASSERT_TRUE(config.ok()) << config.error();
+    EXPECT_EQ(config.value().publish.viewports.at(0).max_bytes, 30000);
+}
 
 TEST_F(ConfigTest, AMinimalPlaneRigGetsItsDefaults) {
     const auto config = Load(kPlane);
@@ -227,6 +246,17 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"just words\n", "rig.yaml:1: the file is just words, must be a map"},
         BadFile{"schema: 1\ncanvas: {size_px: [1, 2}\n",
                 "rig.yaml:2: the file is not YAML (illegal flow end), must be YAML"},
+        BadFile{
+            kPlane + "x: &a [1, *a]\n",
+            "rig.yaml:6: the file is not YAML (an alias within what it stands for), must be YAML"},
+        BadFile{kPlane + "x: [" + std::string(64, '[') + "\n",
+                "rig.yaml:6: the file is not YAML (more than 64 levels, aliases followed), must be "
+                "YAML"},
+        BadFile{kPlane + AliasesOfAliases(8),
+                "rig.yaml:12: the file is not YAML (more than 1048576 values, aliases followed), "
+                "must be YAML"},
+        BadFile{kPlane + "real_time: {\"a\\nb\": 1}\n",
+                "rig.yaml:6: real_time.a?b is no key, must be one of lock_memory"},
         BadFile{"schema: 2\n" + kPlane.substr(10), "rig.yaml:1: schema is 2, must be 1"},
         BadFile{kPlane.substr(10), "rig.yaml:1: schema is missing, must be 1"}));
 
@@ -426,18 +456,16 @@ TEST_P(RigExampleKeysTest, EveryKeyOfTheSectionIsShown) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sections, RigExampleKeysTest,
-                         testing::Values("x: 1\n",
-                                         "  trailer: {cameras: [{name: b, source: {v4l2: /dev/b, "
-                                         "x: 1}}]}\n",
-                                         "simulation: {x: 1}\n", "stabilization: {x: 1}\n",
-                                         "stitching: {x: 1}\n", "threads: {x: 1}\n",
-                                         "real_time: {x: 1}\n", "can: {x: 1}\n",
-                                         "publish: {viewports: [{x: 1}]}\n",
-                                         "publish: {preview: {x: 1}}\n",
-                                         "publish: {overlay: {x: 1}}\n",
-                                         "can: {hitch_angle: {x: 1}}\n", "publish: {x: 1}\n",
-                                         "record: {x: 1}\n"));
+INSTANTIATE_TEST_SUITE_P(
+    Sections, RigExampleKeysTest,
+    testing::Values("x: 1\n",
+                    "  trailer: {cameras: [{name: b, source: {v4l2: /dev/b, "
+                    "x: 1}}]}\n",
+                    "simulation: {x: 1}\n", "stabilization: {x: 1}\n", "stitching: {x: 1}\n",
+                    "threads: {x: 1}\n", "real_time: {x: 1}\n", "can: {x: 1}\n",
+                    "publish: {viewports: [{x: 1}]}\n", "publish: {preview: {x: 1}}\n",
+                    "publish: {overlay: {x: 1}}\n", "can: {hitch_angle: {x: 1}}\n",
+                    "publish: {x: 1}\n", "record: {x: 1}\n"));
 
 }  // namespace
 }  // namespace hitchview::app

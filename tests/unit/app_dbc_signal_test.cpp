@@ -133,5 +133,24 @@ TEST(DbcSignalTest, AMultiplexedSignalNeedsAPlainMultiplexor) {
     EXPECT_TRUE(angle(page + "SG_MUL_VAL_ 1 s p 2-2;\n"));
 }
 
+TEST(DbcSignalTest, AnAngleKeepsWithinWhatAngleSignalsMayBe) {
+    const auto angle = [](const std::string& scale, double unit_deg) {
+        const auto dbc = ParseDbc("BO_ 1 A: 8 X\n SG_ s : 0|8@1+ " + scale +
+                                      " \"deg\" X\nBA_ \"GenMsgCycleTime\" BO_ 1 3600000;\n",
+                                  "x.dbc");
+        EXPECT_TRUE(dbc) << dbc.error();
+        const DbcMessage& message = dbc.value().messages[0];
+        return HitchAngleOf(message, message.signals[0], unit_deg);
+    };
+    const auto wide = angle("(1000,100000) [-1e9|1e9]", -1);
+    ASSERT_TRUE(wide) << wide.error();
+    EXPECT_EQ(wide.value().min_deg, -360);
+    EXPECT_EQ(wide.value().max_deg, 360);
+    EXPECT_EQ(wide.value().max_age, std::chrono::minutes(1));
+    EXPECT_FALSE(angle("(1000.1,0) [0|1]", 1));
+    EXPECT_FALSE(angle("(1e308,0) [0|1]", 57));
+    EXPECT_FALSE(angle("(1,-100000.1) [0|1]", 1));
+}
+
 }  // namespace
 }  // namespace hitchview::app

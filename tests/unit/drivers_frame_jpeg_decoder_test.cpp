@@ -91,6 +91,16 @@ TEST_F(FrameJpegDecoderTest, PicturesWithoutHuffmanTablesAreDecodedWithTheStanda
     EXPECT_EQ(nv12.value(), Decode(good_).value());
 }
 
+TEST_F(FrameJpegDecoderTest, APictureWithoutQuantisationTablesDoesNotGetThoseOfTheOneBefore) {
+    Bytes bare = good_;
+    for (std::size_t i = 0; i + 1 < bare.size(); ++i) {
+        if (bare[i] == 0xFF && bare[i + 1] == 0xDB) bare[i + 1] = 0xEF;  // now application data
+    }
+    EXPECT_FALSE(Decode(bare).ok());
+    EXPECT_TRUE(Decode(good_).ok());
+    EXPECT_FALSE(Decode(bare).ok());
+}
+
 TEST_F(FrameJpegDecoderTest, WhatIsNotAWholePictureOfTheSizeIsCorruptedAndTheNextIsGood) {
     const Bytes cut(good_.begin(), good_.begin() + static_cast<std::ptrdiff_t>(good_.size() / 2));
     const Bytes other = JpegPicture(32, 48, TJSAMP_422, 1);

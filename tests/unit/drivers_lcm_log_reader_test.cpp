@@ -21,22 +21,30 @@ struct ReadLog {
     LcmLogDamage damage;
 };
 
+ReadLog ReadAll(LcmLogReader& reader) {
+    ReadLog read;
+    auto event = reader.Next();
+    for (; event; event = reader.Next()) read.events.emplace_back(event.value());
+    EXPECT_EQ(event.error(), hal::Error::kEndOfStream);
+    read.damage = reader.damage();
+    return read;
+}
+
 ReadLog ReadAll(const std::string& file, const LcmLogReaderOptions& options = {}) {
     auto reader = LcmLogReader::Open(file, options);
     HV_EXPECT(reader.ok());
-    ReadLog read;
-    auto event = (*reader)->Next();
-    for (; event; event = (*reader)->Next()) read.events.emplace_back(event.value());
-    EXPECT_EQ(event.error(), hal::Error::kEndOfStream);
-    read.damage = (*reader)->damage();
-    return read;
+    return ReadAll(**reader);
 }
 
 class LcmLogReaderTest : public testing::Test {
  protected:
     ReadLog ReadAll(const LogBytes& bytes, const LcmLogReaderOptions& options = {}) {
         tests::WriteBytes(file_, bytes);
-        return drivers::ReadAll(file_, options);
+        LcmLogReader of_memory(bytes, options);
+        ReadLog read = drivers::ReadAll(file_, options);
+        EXPECT_EQ(drivers::ReadAll(of_memory).events, read.events);
+        EXPECT_EQ(of_memory.damage().skipped_bytes, read.damage.skipped_bytes);
+        return read;
     }
 
     tests::TemporaryFolder folder_;

@@ -198,6 +198,31 @@ TEST(ReplayCameraTest, ADamagedOrDifferentPictureIsReportedInItsPlace) {
     EXPECT_EQ(last.value().view().header.sequence, 4U);
 }
 
+TEST(ReplayCameraTest, APictureCutOffInItsHeaderLeavesTheNextAsItIs) {
+    const TemporaryFolder folder;
+    WriteSequence(folder, "%d.jpg", 0, 2, {64, 48});
+    std::filesystem::resize_file(folder / "1.jpg", 300);
+    std::filesystem::copy_file(folder / "0.jpg", folder / "2.jpg");
+    const auto camera = Open(folder / "%d.jpg");
+    const auto first = camera->WaitFrame(kLong);
+    EXPECT_FALSE(camera->WaitFrame(kLong));
+    const auto next = camera->WaitFrame(kLong);
+    ASSERT_TRUE(first && next);
+    const auto pixels = [](const hal::FrameView& view) {
+        return std::vector(view.planes[0].data, view.planes[0].data + hal::FrameBytes(view.format));
+    };
+    EXPECT_EQ(pixels(next.value().view()), pixels(first.value().view()));
+}
+
+TEST(ReplayCameraTest, AFolderNamedLikeAPictureIsReportedInItsPlace) {
+    const TemporaryFolder folder;
+    WriteSequence(folder, "%d.jpg", 0, 1, {64, 48});
+    std::filesystem::create_directory(folder / "1.jpg");
+    const auto camera = Open(folder.path());
+    EXPECT_TRUE(camera->WaitFrame(kLong));
+    EXPECT_EQ(camera->WaitFrame(kLong).error(), hal::Error::kCorrupted);
+}
+
 TEST(ReplayCameraTest, WhatCannotBeOpenedSaysWhy) {
     const TemporaryFolder folder;
     folder.Write("text.avi", "this is no video");
