@@ -241,7 +241,7 @@ TEST_F(LcmRunTest, HealthComesOnceASecondFromTheStart) {
         EXPECT_STREQ(health.cameras[0].unit, "tractor");
         EXPECT_STREQ(health.cameras[7].unit, "trailer");
         ASSERT_EQ(health.nstages, 10);
-        EXPECT_STREQ(health.stages[8].name, "latency");
+        EXPECT_STREQ(health.stages[9].name, "latency");
         if (health.sequence > 0) {
             EXPECT_GT(health.panoramas, 0);
             EXPECT_GT(health.panoramas_per_s, 0);
