@@ -181,11 +181,11 @@ hal::Checked<RunSummary> Run(const RigConfig& config, const RunOptions& options,
     Pipeline pipeline(rig.value(), *motion.any, workers);
     if (const auto primed = Prime(**board, pipeline, stop); !primed) return primed.error();
     // A recording starts again from its first frame.
-    if ((*board)->live() == nullptr) board = Board::Open(config, opened);
+    if ((*board)->live() == nullptr) board = Board::Open(config, opened, std::move(*board));
     if (board && motion.offline != nullptr) {
         if (const auto learnt = Learn(**board, *motion.offline, options, workers, stop); !learnt)
             return learnt.error();
-        board = Board::Open(config, opened);
+        board = Board::Open(config, opened, std::move(*board));
     }
     if (!board) return board.error();
 
