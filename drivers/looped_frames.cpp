@@ -33,8 +33,9 @@ std::span<std::uint8_t> LoopedFrames::Place(std::span<std::uint8_t> film, int fr
 }
 
 std::span<const std::uint8_t> LoopedFrames::Frame(int camera, std::uint64_t number) const {
-    const Film& film = films_.at(static_cast<std::size_t>(camera));
-    HV_EXPECT(!film.bytes.empty());
+    const auto place = static_cast<std::size_t>(camera);
+    HV_EXPECT(place < films_.size() && !films_[place].bytes.empty());
+    const Film& film = films_[place];
     const auto frame =
         static_cast<std::size_t>(ForthAndBack(number, static_cast<std::uint64_t>(frames_) - 1));
     if (!film.given[frame]) return {};
