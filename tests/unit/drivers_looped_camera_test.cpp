@@ -191,6 +191,20 @@ TEST_F(LoopedLiveCameraTest, ReopenedItIsThereAtOnceAndWhatCameMeanwhileIsForgot
     EXPECT_EQ(sut.counts().lost, 0U);
 }
 
+TEST_F(LoopedLiveCameraTest, WhatWaitsWhenItIsReopenedLeavesItsRoom) {
+    LoopedLiveCamera sut = Camera(3);
+    ASSERT_TRUE(sut.WaitFrame(milliseconds(1)));
+    clock_.Advance(3 * kPeriod);
+    ASSERT_TRUE(sut.WaitFrame(milliseconds(1)));  // two more wait
+    ASSERT_TRUE(sut.Reopen());
+    std::vector<hal::Result<hal::FrameLease>> held;
+    for (int i = 0; i < 3; ++i) {
+        held.push_back(sut.WaitFrame(milliseconds(100)));
+        ASSERT_TRUE(held.back());
+        EXPECT_EQ(held.back()->view().header.captured_at, kStart + (4 + i) * kPeriod);
+    }
+}
+
 TEST_F(LoopedLiveCameraTest, TakesNoMemoryOnceItIsThere) {
     if (!tests::kHeapCallsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
     LoopedLiveCamera sut = Camera(2);
