@@ -10,12 +10,14 @@
 #include "app/live_camera_options.hpp"
 #include "app/log_replay.hpp"
 #include "app/publish_options.hpp"
+#include "app/simulated_loop.hpp"
 #include "app/tapped_camera.hpp"
 #include "drivers/candump_can_bus.hpp"
 #include "drivers/lcm_log_camera.hpp"
 #include "drivers/lcm_log_can_bus.hpp"
 #include "drivers/lcm_publisher.hpp"
 #include "drivers/lcm_receive_buffer.hpp"
+#include "drivers/looped_camera.hpp"
 #include "drivers/replay_camera.hpp"
 #include "drivers/simulated_camera.hpp"
 #include "drivers/simulated_can_bus.hpp"
@@ -58,10 +60,16 @@ void ApplyDrive(const SimulationConfig& config, drivers::SimulationOptions& opti
     }
 }
 
+/// Of the drive that is there to be rendered: a loop of its first frames has its own length.
+int DriveFrames(const SimulationConfig& config, int of_scenario) {
+    if (config.loop_frames) return std::max(of_scenario, *config.loop_frames);
+    return config.frames.value_or(of_scenario);
+}
+
 drivers::SimulationOptions Overridden(drivers::SimulationOptions options,
                                       const SimulationConfig& config, hal::Instant period) {
     options.seed = config.seed.value_or(options.seed);
-    options.frames = config.frames.value_or(options.frames);
+    options.frames = DriveFrames(config, options.frames);
     options.render_threads = 1;  // each camera is rendered on a thread of its own
     options.period = period;
     if (config.camera_size_px) {
@@ -180,6 +188,28 @@ int SimulatedIndex(const drivers::SimulatedRig& rig, algo::Unit unit, const std:
     return -1;
 }
 
+std::string NoSuchCamera(const RigConfig& config, algo::Unit unit, const std::string& name) {
+    return config.file.string() + ": camera " + name + " of the " + ToString(unit) +
+           " is not one that the simulated rig has (tractor: front, left_front, right_front; "
+           "trailer: left, left_rear, rear, right_rear, right)";
+}
+
+/// Frames until the end, unless it is live.
+int RunFrames(const RigConfig& config, const drivers::SimulatedRig& rig) {
+    return config.simulation.frames.value_or(rig.options().frames);
+}
+
+/// Of the cameras that the simulated rig has.
+std::vector<int> SimulatedIndices(const drivers::SimulatedRig& rig, const RigConfig& config) {
+    std::vector<int> indices;
+    for (const PlacedCamera& camera : CamerasOf(config)) {
+        if (camera.config->source != CameraConfig::Source::kSimulated) continue;
+        const int index = SimulatedIndex(rig, camera.unit, camera.config->name);
+        if (index >= 0) indices.push_back(index);
+    }
+    return indices;
+}
+
 }  // namespace
 
 Board::Board(const Options& options)
@@ -189,8 +219,11 @@ Board::Board(const Options& options)
       events_(event_log_.get()) {}
 Board::~Board() = default;
 
-hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, const Options& options) {
+hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, const Options& options,
+                                                 std::unique_ptr<Board> earlier) {
     std::unique_ptr<Board> board(new Board(options));
+    if (earlier) board->loop_ = std::move(earlier->loop_);
+    earlier.reset();
     const int slots = options.held_frames + kFramesAhead + (options.recorded ? FrameTap::kHeld : 0);
     if (config.period) board->period_ = *config.period;
     if (const auto simulated = board->OpenSimulation(config); !simulated) return simulated.error();
@@ -218,8 +251,7 @@ hal::Checked<hal::Done> Board::OpenSimulation(const RigConfig& config) {
         }
     }
     if (!needed) return hal::Done{};
-    const bool scripted = options_.faults != nullptr && options_.faults->scenario;
-    const std::string& name = scripted ? *options_.faults->scenario : config.simulation.scenario;
+    const std::string& name = config.simulation.scenario;
     const drivers::Scenario* scenario = drivers::FindScenario(name);
     if (scenario == nullptr) {
         return config.file.string() + ": simulation.scenario is " + name + ", must be one of " +
@@ -227,12 +259,13 @@ hal::Checked<hal::Done> Board::OpenSimulation(const RigConfig& config) {
     }
     auto options =
         Overridden(scenario->options, config.simulation, config.period.value_or(kDefaultPeriod));
-    if (options_.faults != nullptr)
-        options.frames = options_.faults->frames.value_or(options.frames);
     if (options_.held_sheet != nullptr) options.sheet = *options_.held_sheet;
     auto rig = drivers::SimulatedRig::Create(options);
     if (!rig) return config.file.string() + ": simulation: " + rig.error();
     simulation_ = std::move(*rig);
+    const auto& looped = config.simulation.loop_frames;
+    if (looped && !loop_)
+        loop_ = RenderLoop(*simulation_, SimulatedIndices(*simulation_, config), *looped);
     return hal::Done{};
 }
 
@@ -244,15 +277,8 @@ hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit un
     }
     if (camera.source == CameraConfig::Source::kSimulated) {
         const int index = SimulatedIndex(*simulation_, unit, camera.name);
-        if (index < 0) {
-            return config.file.string() + ": camera " + camera.name + " of the " + ToString(unit) +
-                   " is not one that the simulated rig has (tractor: front, left_front, "
-                   "right_front; "
-                   "trailer: left, left_rear, rear, right_rear, right)";
-        }
-        auto rendered =
-            std::make_unique<drivers::SimulatedCamera>(*simulation_, index, hal::Instant{0}, slots);
-        Add(unit, camera.name, std::make_unique<CameraAhead>(std::move(rendered), camera.name));
+        if (index < 0) return NoSuchCamera(config, unit, camera.name);
+        Add(unit, camera.name, OpenSimulatedCamera(config, camera.name, index, slots));
         return hal::Done{};
     }
     // Where the rig file states the pace, the frames were captured at it.
@@ -264,6 +290,24 @@ hal::Checked<hal::Done> Board::OpenCamera(const RigConfig& config, algo::Unit un
         period_ = hal::Instant(static_cast<std::int64_t>(1e9 / (*replay)->rate_hz()));
     Add(unit, camera.name, std::move(*replay));
     return hal::Done{};
+}
+
+std::unique_ptr<hal::Camera> Board::OpenSimulatedCamera(const RigConfig& config,
+                                                        const std::string& name, int index,
+                                                        int slots) {
+    std::unique_ptr<hal::Camera> camera;
+    if (loop_) {
+        camera = std::make_unique<drivers::LoopedCamera>(
+            *loop_, drivers::LoopedCameraOptions{
+                        .camera = index,
+                        .period = simulation_->options().period,
+                        .frames = static_cast<std::uint32_t>(RunFrames(config, *simulation_)),
+                        .slots = slots});
+    } else {
+        camera =
+            std::make_unique<drivers::SimulatedCamera>(*simulation_, index, hal::Instant{0}, slots);
+    }
+    return std::make_unique<CameraAhead>(std::move(camera), name);
 }
 
 std::unique_ptr<hal::Camera> Board::WithFaults(const std::string& name,
@@ -289,8 +333,23 @@ hal::Camera& Board::Add(algo::Unit unit, const std::string& name,
     return *cameras_[unit].emplace_back(std::move(camera));
 }
 
+hal::Checked<hal::Done> Board::OpenLiveSimulation(const RigConfig& config, int slots) {
+    const hal::Instant start = clock_->Now();
+    for (const auto& [camera, unit, index_in_unit] : CamerasOf(config)) {
+        const int index = SimulatedIndex(*simulation_, unit, camera->name);
+        if (index < 0) return NoSuchCamera(config, unit, camera->name);
+        const drivers::LoopedCameraOptions options{
+            .camera = index, .period = period_, .start = start, .slots = slots};
+        auto opened = std::make_unique<drivers::LoopedLiveCamera>(*loop_, options, *clock_);
+        live_cameras_.push_back(
+            {&Add(unit, camera->name, std::move(opened)), camera->name, unit, index_in_unit});
+    }
+    return hal::Done{};
+}
+
 hal::Checked<hal::Done> Board::OpenLiveCameras(const RigConfig& config, int slots) {
     if (period_.count() == 0) period_ = kDefaultPeriod;
+    if (config.simulation.live) return OpenLiveSimulation(config, slots);
     const int taps = options_.recorded ? FrameTap::kHeld : 0;
     LiveOpening opening(1e9 / static_cast<double>(period_.count()), slots, taps);
     const std::vector<PlacedCamera> cameras = CamerasOf(config);
@@ -350,7 +409,7 @@ void Board::StartSets(const RigConfig& config) {
 hal::Checked<hal::Done> Board::OpenCanBus(const RigConfig& config) {
     if (!config.can) return hal::Done{};
     if (config.can->source == CanConfig::Source::kSimulated) {
-        can_bus_ = std::make_unique<drivers::SimulatedCanBus>(*simulation_, hal::Instant{0});
+        OpenSimulatedCan(config);
         return hal::Done{};
     }
     if (config.can->source == CanConfig::Source::kSocketCan) return OpenSocketCan(config);
@@ -364,6 +423,17 @@ hal::Checked<hal::Done> Board::OpenCanBus(const RigConfig& config) {
     if (!bus) return bus.error();
     can_bus_ = std::move(*bus);
     return hal::Done{};
+}
+
+void Board::OpenSimulatedCan(const RigConfig& config) {
+    drivers::SimulatedCanOptions options{.frames = RunFrames(config, *simulation_),
+                                         .loop_frames = config.simulation.loop_frames.value_or(0)};
+    if (config.simulation.live) {
+        options.start = clock_->Now();
+        options.clock = clock_.get();
+        is_can_live_ = true;
+    }
+    can_bus_ = std::make_unique<drivers::SimulatedCanBus>(*simulation_, options);
 }
 
 hal::Checked<hal::Done> Board::OpenSocketCan(const RigConfig& config) {

@@ -17,6 +17,7 @@
 
 namespace hitchview::drivers {
 class LcmLogCanBus;
+class LoopedFrames;
 class SimulatedRig;
 struct SheetOptions;
 }  // namespace hitchview::drivers
@@ -41,9 +42,11 @@ class Board {
         /// What somebody holds before each simulated camera; null: nothing. Borrowed by Open.
         const drivers::SheetOptions* held_sheet = nullptr;
     };
-    /// Opens what the configuration names.
+    /// Opens what the configuration names. `earlier`: a board of the same rig, which ends; frames
+    /// that it rendered for a loop are shown again.
     static hal::Checked<std::unique_ptr<Board>> Open(const RigConfig& config,
-                                                     const Options& options);
+                                                     const Options& options,
+                                                     std::unique_ptr<Board> earlier = nullptr);
     ~Board();
     Board(const Board&) = delete;
     Board& operator=(const Board&) = delete;
@@ -80,7 +83,11 @@ class Board {
     hal::Checked<hal::Done> OpenSimulation(const RigConfig& config);
     hal::Checked<hal::Done> OpenCamera(const RigConfig& config, algo::Unit unit,
                                        const CameraConfig& camera, int slots);
+    std::unique_ptr<hal::Camera> OpenSimulatedCamera(const RigConfig& config,
+                                                     const std::string& name, int index, int slots);
     hal::Checked<hal::Done> OpenLiveCameras(const RigConfig& config, int slots);
+    hal::Checked<hal::Done> OpenLiveSimulation(const RigConfig& config, int slots);
+    void OpenSimulatedCan(const RigConfig& config);
     void OpenLogCamera(const RigConfig& config, algo::Unit unit, const CameraConfig& camera,
                        int slots);
     hal::Camera& Add(algo::Unit unit, const std::string& name,
@@ -94,6 +101,7 @@ class Board {
     const Options options_;
     std::unique_ptr<hal::Clock> clock_;
     std::unique_ptr<drivers::SimulatedRig> simulation_;
+    std::unique_ptr<drivers::LoopedFrames> loop_;  ///< of its cameras; null: the whole drive
     Cameras cameras_;
     std::vector<FrameTap*> taps_;
     std::vector<LiveCamera> live_cameras_;

@@ -73,6 +73,7 @@ void CameraWatch::Look(FrameSet& set) {
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
         const bool has_picture = static_cast<bool>(LeaseOf(set, i)) && !signs[i][CameraState::kLate];
         cameras_[i].judge.Note(signs[i], has_picture);
+        if (pictures_.SeemsRepeated(i)) set.cameras_repeated |= 1U << i;
         Decide(i, set, !has_picture);
     }
     SetMoments(set);

@@ -112,13 +112,23 @@ std::optional<std::chrono::nanoseconds> ReadSetTolerance(const YamlValue& value,
                                                          const RigConfig& config,
                                                          const ConfigContext& context) {
     if (!value.given()) return std::nullopt;
-    if (context.live_cameras == 0)
-        value.Refuse("absent unless the cameras are live (v4l2, libcamera)");
+    if (!context.IsLive())
+        value.Refuse("absent unless the cameras are live (v4l2, libcamera, simulation.live)");
     const auto period = config.period.value_or(std::chrono::nanoseconds(kDefaultPeriod));
     double tolerance_ms = 1;
     // Divided, not multiplied by 1e-6: so a tolerance written like the period is within it.
     value.Read({1, static_cast<double>(period.count()) / 1e6}, tolerance_ms);
     return std::chrono::nanoseconds(std::llround(tolerance_ms * 1e6));
+}
+
+void CheckCanBeside(const YamlValue& can, CanConfig::Source source, const ConfigContext& context) {
+    using Source = CanConfig::Source;
+    if (context.live_cameras > 0 && source != Source::kSocketCan)
+        can.Refuse("a map with the source {socketcan: NAME} beside live cameras");
+    if (context.live_simulation && source == Source::kCandump)
+        can.Refuse(
+            "a map with the source {simulated: true} or {socketcan: NAME} with "
+            "simulation.live");
 }
 
 RigConfig ReadRig(YamlMap& root, ConfigContext& context) {
@@ -138,9 +148,7 @@ RigConfig ReadRig(YamlMap& root, ConfigContext& context) {
     config.set_tolerance = ReadSetTolerance(root["set_tolerance_ms"], config, context);
     const YamlValue can = root["can"];
     config.can = ReadCan(can, context);
-    if (context.live_cameras > 0 && config.can &&
-        config.can->source != CanConfig::Source::kSocketCan)
-        can.Refuse("a map with the source {socketcan: NAME} beside live cameras");
+    if (config.can) CheckCanBeside(can, config.can->source, context);
     config.publish =
         ReadPublish(root["publish"], config.canvas.projection == Projection::kCylinder);
     config.record = ReadRecord(root["record"], context);

@@ -114,12 +114,17 @@ struct SimulationConfig {
 
     std::string scenario = "slalom";  ///< which there are, the simulation knows
     std::optional<std::uint32_t> seed{};
-    std::optional<int> frames{};  ///< [1, 36000]
+    std::optional<int> frames{};  ///< [1, 36000]; with loop_frames [1, 36000000]
     std::optional<Profile> profile{};
     std::optional<Size> camera_size_px{};          ///< even, [64, 4096]; landscape
     std::optional<double> speed_mps{};             ///< throughout. [0, 30]
     algo::PerUnit<std::optional<double>> shake{};  ///< share of the scenario's vibration. [0, 5]
     std::optional<double> noise{};                 ///< standard deviation, grey levels. [0, 50]
+    /// Only so many of its first frames are rendered, at the start, and shown forth and back until
+    /// there were `frames`. [2, 600]
+    std::optional<int> loop_frames{};
+    /// The cameras run at their own pace and without an end; with loop_frames, without frames only.
+    bool live = false;
 };
 
 struct StabilizationConfig {
@@ -320,8 +325,10 @@ struct RigConfig {
 
     /// Its cameras run at their own pace: all of a rig's do, or none.
     [[nodiscard]] bool IsLive() const {
-        return HasUnit(algo::Unit::kTractor) &&
-               units[algo::Unit::kTractor].cameras.front().IsLive();
+        if (!HasUnit(algo::Unit::kTractor)) return false;
+        const CameraConfig& camera = units[algo::Unit::kTractor].cameras.front();
+        return camera.IsLive() ||
+               (camera.source == CameraConfig::Source::kSimulated && simulation.live);
     }
     [[nodiscard]] bool HasUnit(algo::Unit unit) const { return !units[unit].cameras.empty(); }
 };

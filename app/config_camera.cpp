@@ -99,7 +99,7 @@ void ReadCameraSource(const YamlValue& value, ConfigContext& context, CameraConf
         ReadLibcamera(libcamera, map, camera);
     } else if (simulated.given()) {
         camera.source = Source::kSimulated;
-        context.simulates_cameras = true;
+        ++context.simulated_cameras;
     }
     map.Finish();
 }

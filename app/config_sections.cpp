@@ -45,6 +45,25 @@ std::optional<Size> ReadCameraSize(const YamlValue& value) {
     return size;
 }
 
+/// How long the drive is: once, forth and back, or without an end.
+void ReadLength(YamlMap& map, ConfigContext& context, SimulationConfig& simulation) {
+    const YamlValue frames = map["frames"];
+    const YamlValue loop = map["loop_frames"];
+    const YamlValue live = map["live"];
+    constexpr int kMostFrames = 36'000;           // 20 minutes
+    constexpr int kMostLoopedFrames = 36'000'000;  // that are shown again
+    ReadOptional(frames, Range<int>{1, loop.given() ? kMostLoopedFrames : kMostFrames},
+                 simulation.frames);
+    ReadOptional(loop, Range<int>{2, 600}, simulation.loop_frames);
+    live.Read(simulation.live);
+    if (!simulation.live) return;
+    context.live_simulation = true;
+    if (!loop.given()) live.Refuse("absent or false without loop_frames");
+    if (context.recorded_cameras > context.simulated_cameras)
+        live.Refuse("absent or false beside cameras that are not simulated");
+    frames.Refuse("absent with live: true, which goes on until it is stopped");
+}
+
 }  // namespace
 
 void ReadPath(const YamlValue& value, const ConfigContext& context, std::filesystem::path& out) {
@@ -67,15 +86,15 @@ void ReadTrue(const YamlValue& value) {
     if (!is_true) value.Refuse("true");
 }
 
-SimulationConfig ReadSimulation(const YamlValue& value, const ConfigContext& context) {
+SimulationConfig ReadSimulation(const YamlValue& value, ConfigContext& context) {
     SimulationConfig simulation;
-    if (value.given() && !context.simulates_cameras) {
+    if (value.given() && context.simulated_cameras == 0) {
         value.Refuse("absent unless a camera has the source {simulated: true}");
     }
     YamlMap map = value.Map();
     map["scenario"].Read(simulation.scenario);
     ReadOptional(map["seed"], Range<std::uint32_t>{0, UINT32_MAX}, simulation.seed);
-    ReadOptional(map["frames"], Range<int>{1, 36000}, simulation.frames);
+    ReadLength(map, context, simulation);
     ReadOptional(map["profile"], kProfiles, simulation.profile);
     simulation.camera_size_px = ReadCameraSize(map["camera_size_px"]);
     ReadOptional(map["speed_mps"], Range<double>{0, 30}, simulation.speed_mps);

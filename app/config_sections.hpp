@@ -17,10 +17,13 @@ struct ConfigContext {
     std::filesystem::path folder{};
     bool recorded = false;  ///< a recording's rig file: other files may not be there
     std::set<std::string> camera_names{};
-    bool simulates_cameras = false;
     std::set<std::string> devices{};
-    int live_cameras = 0;
+    int live_cameras = 0;      ///< that are devices
     int recorded_cameras = 0;  ///< and simulated
+    int simulated_cameras = 0;
+    bool live_simulation = false;
+
+    [[nodiscard]] bool IsLive() const { return live_cameras > 0 || live_simulation; }
 };
 
 void ReadPath(const calib::YamlValue& value, const ConfigContext& context,
@@ -32,7 +35,7 @@ void ReadTrue(const calib::YamlValue& value);
 
 /// In config_camera.cpp.
 CameraConfig ReadCamera(const calib::YamlValue& value, ConfigContext& context);
-SimulationConfig ReadSimulation(const calib::YamlValue& value, const ConfigContext& context);
+SimulationConfig ReadSimulation(const calib::YamlValue& value, ConfigContext& context);
 StabilizationConfig ReadStabilization(const calib::YamlValue& value);
 /// Workers and their schedule.
 void ReadThreads(const calib::YamlValue& value, RigConfig& config);

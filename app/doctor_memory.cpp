@@ -34,6 +34,8 @@ Size SizeOf(const RigConfig& rig, const CameraConfig& camera) {
 std::uint64_t MemoryOfCamera(const RigConfig& rig, const CameraConfig& camera) {
     int buffers = std::max(camera.live.buffers, kUsualBuffers);
     if (!rig.record.folder.empty()) buffers += kRecordedBuffers;
+    if (camera.source == CameraConfig::Source::kSimulated)
+        buffers += rig.simulation.loop_frames.value_or(0);
     return Pixels(SizeOf(rig, camera)) * kBytesPerCameraPixel * static_cast<std::uint64_t>(buffers);
 }
 

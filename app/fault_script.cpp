@@ -125,4 +125,9 @@ hal::Checked<hal::Done> CheckCameras(const FaultScript& script, const RigConfig&
     return hal::Done{};
 }
 
+void TakeDrive(const FaultScript& script, RigConfig& rig) {
+    rig.simulation.scenario = script.scenario.value_or(rig.simulation.scenario);
+    if (script.frames) rig.simulation.frames = script.frames;
+}
+
 }  // namespace hitchview::app

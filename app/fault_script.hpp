@@ -72,4 +72,7 @@ hal::Checked<FaultScript> ParseFaultScript(const NamedText& script);
 /// Done, or the camera of the script that the rig does not have.
 hal::Checked<hal::Done> CheckCameras(const FaultScript& script, const RigConfig& rig);
 
+/// The drive of the script in place of the rig's.
+void TakeDrive(const FaultScript& script, RigConfig& rig);
+
 }  // namespace hitchview::app

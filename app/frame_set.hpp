@@ -22,6 +22,7 @@ struct FrameSet {
     std::uint32_t cameras_late = 0;
     std::uint32_t cameras_disordered = 0;  ///< gave frames with stamps that went back, not taken
     std::array<hal::CameraState, algo::kMaxCameras> camera_states{};  ///< see CameraWatch
+    std::uint32_t cameras_repeated = 0;  ///< gave a picture that seems to be the one before
 };
 
 }  // namespace hitchview::app

@@ -54,7 +54,8 @@ void PictureSigns::Add(std::size_t index, const algo::CameraFrame& picture) {
 
 /// All of the picture is compared only where its samples do not differ.
 bool PictureSigns::Repeats(Camera& camera, const algo::CameraFrame& picture) {
-    if (camera.look.print != camera.print_before) {
+    camera.seems_repeated = camera.look.print == camera.print_before;
+    if (!camera.seems_repeated) {
         camera.print_before = camera.look.print;
         camera.whole_print_before.reset();
         return false;

@@ -23,6 +23,10 @@ class PictureSigns {
     void Add(std::size_t camera, const algo::CameraFrame& picture);
     /// After the last one: adds what the pictures show to the signs of their cameras.
     void Finish(std::array<CameraSigns, kMaxCameras>& signs);
+    /// After the last one.
+    [[nodiscard]] bool SeemsRepeated(std::size_t camera) const {
+        return cameras_[camera].present && cameras_[camera].seems_repeated;
+    }
     void Reset() { *this = PictureSigns(); }
 
  private:
@@ -33,7 +37,8 @@ class PictureSigns {
         algo::PictureLook look;
         std::uint64_t print_before = 0;
         std::optional<std::uint64_t> whole_print_before;  ///< where the samples were equal, too
-        bool repeated = false;
+        bool seems_repeated = false;  ///< its samples are as before
+        bool repeated = false;        ///< all of it is
         float sharpness = 0;  ///< of the sharpest parts
         Cells recent{};       ///< detail of each part, the most of the last moments
     };

@@ -54,6 +54,18 @@ algo::RigFrames Borrow(const FrameSet& set) {
     return frames;
 }
 
+/// A picture that comes twice says that nothing moves: the motion is told without it.
+algo::RigFrames Pipeline::WhatMoves(const FrameSet& set) const {
+    algo::RigFrames frames = Borrow(set);
+    std::uint32_t repeated = set.cameras_repeated;
+    for (const algo::Unit unit : algo::kUnits) {
+        const int cameras = rig_.units[unit] ? rig_.units[unit]->cameras() : 0;
+        for (int i = 0; i < cameras; ++i, repeated >>= 1)
+            if ((repeated & 1U) != 0) frames[unit][static_cast<std::size_t>(i)] = {};
+    }
+    return frames;
+}
+
 Pipeline::Pipeline(const RigGeometry& rig, algo::VertexMotion& motion, algo::TaskRunner& runner)
     : rig_(rig),
       runner_(runner),
@@ -91,7 +103,7 @@ const ShownPanorama* Pipeline::Process(FrameSet&& set) {
     const algo::Composition* composition = nullptr;
     {
         const StageTimer timer(times_, Stage::kMotion);
-        composition = motion_.Step(Borrow(held), runner_);
+        composition = motion_.Step(WhatMoves(held), runner_);
     }
     return composition != nullptr ? Show(*composition) : nullptr;
 }

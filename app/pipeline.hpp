@@ -76,6 +76,7 @@ class Pipeline {
     [[nodiscard]] const hal::FrameFormat& format() const { return format_; }
 
  private:
+    [[nodiscard]] algo::RigFrames WhatMoves(const FrameSet& set) const;
     void ReleaseShown();
     const ShownPanorama* Show(const algo::Composition& composition);
     algo::PanoramaPlanes Planes(std::vector<std::uint8_t>& memory) const;

@@ -21,6 +21,13 @@ void AddSource(CLI::App& verb, RecordOptions& options) {
                     "width of the simulated cameras, 16:9")
         ->check(CLI::IsMember({320, 640, 960, 1280, 1920}))
         ->capture_default_str();
+    verb.add_option("--loop-frames", options.loop_frames,
+                    "of the simulated vehicle: render the first so many frames only, show them "
+                    "forth and back")
+        ->check(CLI::Range(2, 600));
+    verb.add_flag("--live", options.live,
+                  "of the simulated vehicle: cameras that run at their own pace, without an end "
+                  "(30 looped frames, unless given); rig.yaml is then for `run`, too");
 }
 
 void AddLimits(CLI::App& verb, RecordOptions& options) {
@@ -59,12 +66,14 @@ CLI::App& AddRecord(CLI::App& app, RecordOptions& options) {
         "Record cameras, CAN bus and panoramas into LCM logs, beside making the panoramas.\n"
         "What is given here stands in place of the rig file's section `record`.\n"
         "Example: hitchview record --board sim --out out/drive --seconds 10\n"
+        "Example: hitchview record --board sim --live --out out/live --seconds 60\n"
         "Example: hitchview record --rig /etc/hitchview/rig.yaml --out /var/lib/hitchview/drives");
     AddSource(verb, options);
     verb.add_option("--out", options.out, "folder for the recording and report.json")->required();
     verb.add_option("--seconds", options.seconds,
                     "length: of time, or of the drive where it is recorded or simulated; default: "
-                    "until stopped, the end of the recording, 10 of the simulated vehicle")
+                    "until stopped, the end of the recording, 10 of the simulated vehicle unless "
+                    "live")
         ->check(CLI::Range(0.1, 1e6));
     AddLimits(verb, options);
     AddFrames(verb, options);

@@ -39,16 +39,25 @@ void Override(const RecordOptions& options, RecordConfig& record) {
             *options.format == "raw" ? RecordConfig::Format::kRaw : RecordConfig::Format::kJpeg;
 }
 
+/// A live loop has a length, whether one is given or not.
+int LoopFrames(const RecordOptions& options) {
+    constexpr int kUsual = 30;
+    return options.live && options.loop_frames == 0 ? kUsual : options.loop_frames;
+}
+
 hal::Checked<RigConfig> LoadBoard(const RecordOptions& options) {
     if (options.board.empty()) return LoadRigConfig(options.rig);
     const double seconds = options.seconds.value_or(kSimulatedSeconds);
-    if (seconds > kMostSimulatedSeconds)
-        return std::string("--seconds: the simulated vehicle drives at most 1200");
+    if (!options.live && seconds > kMostSimulatedSeconds)
+        return std::string(
+            "--seconds: the simulated vehicle drives at most 1200, unless it is --live");
     const double period_s = std::chrono::duration<double>(kDefaultPeriod).count();
     const auto rig = WriteSimulatedBoard(
         {.scenario = options.scenario,
          .frames = std::max(1, static_cast<int>(std::lround(seconds / period_s))),
-         .camera_width_px = options.camera_width_px},
+         .camera_width_px = options.camera_width_px,
+         .loop_frames = LoopFrames(options),
+         .live = options.live},
         options.out);
     if (!rig) return rig.error();
     return LoadRigConfig(rig.value());

@@ -30,6 +30,8 @@ struct RecordOptions {
     std::optional<int> workers{};
     std::string scenario = "slalom";  ///< of the simulated board
     int camera_width_px = 1280;       ///< of the simulated board
+    int loop_frames = 0;              ///< of the simulated board; see SimulatedBoardOptions
+    bool live = false;                ///< of the simulated board
     bool trap_alloc = false;
 };
 

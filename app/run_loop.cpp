@@ -188,10 +188,6 @@ hal::Checked<RunSummary> Run(const RigConfig& config, const RunOptions& options,
                                 .recorded = options.record && !config.record.folder.empty(),
                                 .awaits_cameras = options.realtime,
                                 .faults = options.faults ? &*options.faults : nullptr};
-    if (options.faults) {
-        if (const auto checked = CheckCameras(*options.faults, config); !checked)
-            return checked.error();
-    }
     auto board = Board::Open(config, opened);
     if (!board) return board.error();
     const auto rig = MakeRigGeometry(config, *calibration, (*board)->formats());
@@ -208,11 +204,11 @@ hal::Checked<RunSummary> Run(const RigConfig& config, const RunOptions& options,
     Pipeline pipeline(rig.value(), *motion.any, workers);
     if (const auto primed = Prime(**board, pipeline, stop); !primed) return primed.error();
     // A recording starts again from its first frame.
-    if ((*board)->live() == nullptr) board = Board::Open(config, opened);
+    if ((*board)->live() == nullptr) board = Board::Open(config, opened, std::move(*board));
     if (board && motion.offline != nullptr) {
         if (const auto learnt = Learn(**board, *motion.offline, options, workers, stop); !learnt)
             return learnt.error();
-        board = Board::Open(config, opened);
+        board = Board::Open(config, opened, std::move(*board));
     }
     if (!board) return board.error();
 
@@ -250,8 +246,13 @@ void ArticulationSummary::Add(const algo::Articulation& articulation) {
 
 hal::Checked<RunSummary> RunRig(const RigConfig& config, const RunOptions& options,
                                 const std::atomic<bool>& stop, const ShownHook& hook) {
-    const auto resolved = ResolveLogs(config, stop);
+    auto resolved = ResolveLogs(config, stop);
     if (!resolved) return resolved.error();
+    if (options.faults) {
+        if (const auto checked = CheckCameras(*options.faults, *resolved); !checked)
+            return checked.error();
+        TakeDrive(*options.faults, *resolved);
+    }
     return Run(resolved.value(), options, stop, hook);
 }
 

@@ -21,12 +21,18 @@ void WriteUnits(const Table& cameras, std::ostream& yaml) {
     }
 }
 
+std::string Length(const SimulatedBoardOptions& options) {
+    std::string keys = options.live ? "live: true" : "frames: " + std::to_string(options.frames);
+    if (options.loop_frames > 0) keys += ", loop_frames: " + std::to_string(options.loop_frames);
+    return keys;
+}
+
 std::string RigYaml(const SimulatedBoardOptions& options, const Table& cameras) {
     std::ostringstream yaml;
     yaml << "# The simulated vehicle.\n"
          << "schema: 1\ncanvas: {projection: cylinder}\ncalibration: rig.calib.yaml\n";
     WriteUnits(cameras, yaml);
-    yaml << "simulation: {scenario: " << options.scenario << ", frames: " << options.frames
+    yaml << "simulation: {scenario: " << options.scenario << ", " << Length(options)
          << ", camera_size_px: [" << options.camera_width_px << ", "
          << options.camera_width_px * 9 / 16 << "]}\n"
          << "can:\n  source: {simulated: true}\n  hitch_angle: {id: "

@@ -9,8 +9,10 @@ namespace hitchview::app {
 
 struct SimulatedBoardOptions {
     std::string scenario = "slalom";
-    int frames = 300;            ///< [1, 36000]
+    int frames = 300;            ///< [1, 36000]; not if it is live
     int camera_width_px = 1280;  ///< 16:9
+    int loop_frames = 0;         ///< as simulation.loop_frames; 0: the whole drive
+    bool live = false;           ///< as simulation.live; with loop_frames only
 };
 
 /// Writes rig file and calibration of the built-in rig: the simulated vehicle with its eight

@@ -1,24 +1,8 @@
 #include "drivers/simulated_camera.hpp"
 
-#include <optional>
-#include <thread>
+#include "drivers/frame_slot.hpp"
 
 namespace hitchview::drivers {
-namespace {
-
-constexpr std::chrono::milliseconds kRetry{1};
-
-/// A free slot, within `timeout`.
-std::optional<hal::FramePool::Slot> WaitSlot(hal::FramePool& pool,
-                                             std::chrono::milliseconds timeout) {
-    for (auto left = timeout;; left -= kRetry) {
-        if (auto maybe_slot = pool.Take()) return maybe_slot;
-        if (left <= std::chrono::milliseconds::zero()) return std::nullopt;
-        std::this_thread::sleep_for(kRetry);
-    }
-}
-
-}  // namespace
 
 SimulatedCamera::SimulatedCamera(const SimulatedRig& rig, int camera_index, hal::Instant start,
                                  int pool_frames)

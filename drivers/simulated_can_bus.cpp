@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/frame_loop.hpp"
+
 namespace hitchview::drivers {
 namespace {
 
@@ -20,13 +22,31 @@ std::uint32_t RawOf(double angle_rad) {
 }  // namespace
 
 SimulatedCanBus::SimulatedCanBus(const SimulatedRig& rig, hal::Instant start)
-    : rig_(rig), start_(start) {}
+    : SimulatedCanBus(rig, {.start = start, .frames = rig.options().frames}) {}
 
-hal::Result<hal::CanFrame> SimulatedCanBus::DoWaitFrame(std::chrono::milliseconds /*timeout*/) {
-    if (next_ > FrameTime(rig_.options(), rig_.options().frames - 1))
-        return hal::Error::kEndOfStream;
-    const std::uint32_t raw = RawOf(rig_.HitchAngleAt(next_));
-    hal::CanFrame frame{.id = kHitchAngleId, .size_bytes = 8, .received_at = start_ + next_};
+SimulatedCanBus::SimulatedCanBus(const SimulatedRig& rig, const SimulatedCanOptions& options)
+    : rig_(rig), options_(options) {}
+
+bool SimulatedCanBus::HasEnded() const {
+    return options_.clock == nullptr && next_ > FrameTime(rig_.options(), options_.frames - 1);
+}
+
+double SimulatedCanBus::HitchAngle() const {
+    if (options_.loop_frames == 0) return rig_.HitchAngleAt(next_);
+    const hal::Instant turn = FrameTime(rig_.options(), options_.loop_frames - 1);
+    return rig_.HitchAngleAt(hal::Instant(ForthAndBack(next_.count(), turn.count())));
+}
+
+hal::Result<hal::CanFrame> SimulatedCanBus::DoWaitFrame(std::chrono::milliseconds timeout) {
+    if (HasEnded()) return hal::Error::kEndOfStream;
+    const hal::Instant moment = options_.start + next_;
+    if (options_.clock != nullptr) {
+        const hal::Instant end = options_.clock->Now() + timeout;
+        options_.clock->SleepUntil(std::min(moment, end));
+        if (moment > end) return hal::Error::kTimeout;
+    }
+    const std::uint32_t raw = RawOf(HitchAngle());
+    hal::CanFrame frame{.id = kHitchAngleId, .size_bytes = 8, .received_at = moment};
     frame.data[2] =
         static_cast<std::uint8_t>(raw >> 4);  // bit 23 is the first of 12, Motorola order
     frame.data[3] = static_cast<std::uint8_t>((raw & 15U) << 4);

@@ -29,7 +29,7 @@ set(drivers_in_app/web_files "^drivers/lcm_(image_message|listener|log_messages|
 set(drivers_in_app/doctor_display.cpp "^drivers/lcm_url\\.hpp$")
 set(drivers_in_app/doctor_lcm.cpp "^drivers/lcm_url\\.hpp$")
 set(drivers_in_app/doctor_this_machine.cpp "^drivers/(lcm_(listener|receive_buffer|self_test)|socketcan_link)\\.hpp$")
-set(drivers_in_app/demo_verb.cpp "^drivers/(simulated_[a-z_]+|steady_clock)\\.hpp$")
+set(drivers_in_app/demo_verb.cpp "^drivers/(looped_frames|simulated_[a-z_]+|steady_clock)\\.hpp$")
 set(drivers_in_app/log_files "^drivers/lcm_log_[a-z_]+\\.hpp$")
 set(drivers_in_app/record_files "^drivers/lcm_(encoder|log_writer|record_messages|url)\\.hpp$")
 set(drivers_in_app/evaluation.cpp "^drivers/replay_camera\\.hpp$")

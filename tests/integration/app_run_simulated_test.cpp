@@ -101,6 +101,21 @@ TEST_F(SimulatedRunTest, ThePanoramaIsTheSameOnAnyNumberOfWorkers) {
     for (const int workers : {2, 5}) ExpectSame(alone, RunAndKeep(Rig(), {.workers = workers}));
 }
 
+TEST_F(SimulatedRunTest, ALoopShowsTheDriveUntilItTurnsAndGoesOnToItsEnd) {
+    constexpr int kLoop = 11;
+    constexpr int kLength = 23;
+    const auto rig = [&](const std::string& length) {
+        std::string text = tests::FileText(Rig());
+        const std::string key = "frames: " + std::to_string(kFrames);
+        return folder_.Write("rig.yaml", text.replace(text.find(key), key.size(), length));
+    };
+    const auto drive = RunAndKeep(rig("frames: 300"), {.frames = kLoop});
+    const auto looped = RunAndKeep(
+        rig("loop_frames: " + std::to_string(kLoop) + ", frames: " + std::to_string(kLength)));
+    ASSERT_EQ(looped.size(), kLength);
+    ExpectSame(drive, {looped.begin(), looped.begin() + kLoop});
+}
+
 TEST_F(SimulatedRunTest, TheArticulationIsReported) {
     const std::atomic<bool> stop{false};
     const auto summary = RunRig(LoadRigConfig(Rig()).value(), {}, stop);

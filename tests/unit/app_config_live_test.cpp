@@ -167,7 +167,7 @@ TEST_F(ConfigLiveTest, ASetMayNotBeLooserThanAPeriod) {
               "rig.yaml:5: set_tolerance_ms is 0.5, must be 1 to 33.333333");
     EXPECT_EQ(RefusalOf("replay: a.avi", "set_tolerance_ms: 5\n"),
               "rig.yaml:5: set_tolerance_ms is 5, must be absent unless the cameras are live "
-              "(v4l2, libcamera)");
+              "(v4l2, libcamera, simulation.live)");
 }
 
 TEST_F(ConfigLiveTest, ASetMayBeAsLooseAsAPeriod) {

@@ -152,6 +152,22 @@ TEST_F(ConfigTest, WhatTheFileSaysReplacesTheDefaults) {
     EXPECT_EQ(rig.can->hitch_angle.factor_deg, -0.1);
 }
 
+TEST_F(ConfigTest, ALoopedSimulationIsLiveIfTheFileSaysSo) {
+    const auto drive = Load(kSimulated);
+    EXPECT_FALSE(drive.value().simulation.loop_frames);
+    const auto looped = Load(kSimulated + "simulation: {loop_frames: 60, frames: 900}\n");
+    ASSERT_TRUE(looped.ok()) << looped.error();
+    EXPECT_EQ(looped.value().simulation.loop_frames, 60);
+    EXPECT_FALSE(looped.value().IsLive());
+    const auto live = Load(kSimulated +
+                           "simulation: {loop_frames: 60, live: true}\n"
+                           "set_tolerance_ms: 5\n"
+                           "can: {source: {simulated: true}, hitch_angle: {id: 1, start_bit: 0, "
+                           "length_bits: 8, factor_deg: 1}}\n");
+    ASSERT_TRUE(live.ok()) << live.error();
+    EXPECT_TRUE(live.value().IsLive());
+}
+
 TEST_F(ConfigTest, AMissingFileIsNamed) {
     EXPECT_EQ(LoadRigConfig("no/such/rig.yaml").error(),
               "no/such/rig.yaml: the file cannot be read, must be a readable YAML file");
@@ -339,6 +355,29 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{kSimulated + "simulation: {profile: zigzag}\n",
                 "rig.yaml:6: simulation.profile is zigzag, must be one of straight, slalom, "
                 "turn_left, turn_right"},
+        BadFile{kSimulated + "simulation: {loop_frames: 1}\n",
+                "rig.yaml:6: simulation.loop_frames is 1, must be 2 to 600"},
+        BadFile{kSimulated + "simulation: {loop_frames: 601, live: maybe}\n",
+                "rig.yaml:6: simulation.loop_frames is 601, must be 2 to 600\n"
+                "rig.yaml:6: simulation.live is maybe, must be one of false, true"},
+        BadFile{kSimulated + "simulation: {live: true}\n",
+                "rig.yaml:6: simulation.live is true, must be absent or false without "
+                "loop_frames"},
+        BadFile{kSimulated + "simulation: {loop_frames: 9, live: true, frames: 30}\n",
+                "rig.yaml:6: simulation.frames is 30, must be absent with live: true, which goes "
+                "on until it is stopped"},
+        BadFile{kSimulated + "  trailer: {cameras: [{name: b, source: {replay: b.avi}}]}\n"
+                             "simulation: {loop_frames: 9, live: true}\n",
+                "rig.yaml:7: simulation.live is true, must be absent or false beside cameras that "
+                "are not simulated"},
+        BadFile{kSimulated + "simulation: {loop_frames: 9, live: true}\n"
+                             "can: {source: {candump: a.log}, hitch_angle: {id: 1, start_bit: 0, "
+                             "length_bits: 8, factor_deg: 1}}\n",
+                "rig.yaml:7: can is a map, must be a map with the source {simulated: true} or "
+                "{socketcan: NAME} with simulation.live"},
+        BadFile{kSimulated + "simulation: {loop_frames: 9}\nset_tolerance_ms: 5\n",
+                "rig.yaml:7: set_tolerance_ms is 5, must be absent unless the cameras are live "
+                "(v4l2, libcamera, simulation.live)"},
         BadFile{kSimulated + "simulation: {shake: {trailer: 6}}\n",
                 "rig.yaml:6: simulation.shake.trailer is 6, must be 0 to 5"},
         BadFile{kSimulated + "can: {source: {candump: a.log}}\n",

@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "drivers/simulated_camera.hpp"
 #include "drivers/simulated_can_bus.hpp"
+#include "hal/fake_clock.hpp"
 #include "tests/support/simulated_pictures.hpp"
 
 namespace hitchview::drivers {
@@ -89,6 +92,41 @@ TEST(SimulatedCanBusTest, SendsTheHitchAngleEveryTwentyMilliseconds) {
     EXPECT_EQ(frames, 150);  // 90 periods of 33.3 ms end just before 3 s
     EXPECT_GT(largest_deg, 5);
     EXPECT_EQ(sut.WaitFrame(milliseconds(1)).error(), hal::Error::kEndOfStream);
+}
+
+TEST(SimulatedCanBusTest, OfALoopItTellsWhatTheFramesShow) {
+    const auto rig = TinyRig(91);
+    constexpr int kLoop = 31;  // a turn each second
+    SimulatedCanBus sut(*rig, {.start = kStart, .frames = 241, .loop_frames = kLoop});
+    SimulatedCanBus once(*rig, kStart);
+    std::vector<hal::CanFrame> way;
+    for (int i = 0; i <= 50; ++i) way.push_back(once.WaitFrame(milliseconds(1)).value());
+    int frames = 0;
+    for (auto next = sut.WaitFrame(milliseconds(1)); next.ok();
+         next = sut.WaitFrame(milliseconds(1)), ++frames) {
+        const int along = frames % 100;
+        // Nearly: 30 periods are 10 ns short of a second.
+        EXPECT_NEAR(
+            DecodeMotorola(next.value(), 23, 12),
+            DecodeMotorola(way[static_cast<std::size_t>(std::min(along, 100 - along))], 23, 12), 1);
+        EXPECT_EQ(next.value().received_at, kStart + frames * milliseconds(20));
+    }
+    EXPECT_EQ(frames, 400);  // 240 periods end just before 8 s
+}
+
+TEST(SimulatedCanBusTest, WithAClockItsFramesComeAtTheirMoments) {
+    const auto rig = TinyRig(91);
+    hal::FakeClock clock;
+    clock.Advance(kStart);
+    SimulatedCanBus sut(*rig, {.start = kStart, .frames = 1, .loop_frames = 31, .clock = &clock});
+    for (int i = 0; i < 300; ++i) {
+        auto frame = sut.WaitFrame(milliseconds(30));
+        ASSERT_TRUE(frame);
+        EXPECT_EQ(frame->received_at, kStart + i * milliseconds(20));
+        EXPECT_EQ(clock.Now(), frame->received_at);
+    }
+    EXPECT_EQ(sut.WaitFrame(milliseconds(5)).error(), hal::Error::kTimeout);
+    EXPECT_EQ(clock.Now(), kStart + 299 * milliseconds(20) + milliseconds(5));
 }
 
 }  // namespace
