@@ -124,13 +124,13 @@ SimulationOptions Rain() {
 }
 
 /// Half a right angle to the left for each 5 s; the sun stands before the cameras next to the hitch
-/// on the left after 3 s and before the front camera at the end.
+/// on the left after 5 s and before the front camera at the end.
 SimulationOptions LowSunAhead() {
     SimulationOptions options;
     options.profile = DriveProfile::kTurnLeft;
     options.curvature_per_m = 0.02;
     options.scene.sun =
-        SceneOptions::Sun{.azimuth_rad = 110 * kDegree, .elevation_rad = 11 * kDegree};
+        SceneOptions::Sun{.azimuth_rad = 125 * kDegree, .elevation_rad = 11 * kDegree};
     options.sensor.auto_exposure = true;
     return options;
 }
