@@ -7,7 +7,9 @@ namespace hitchview::algo {
 SeamState SeamHysteresis::Update(const Seen& seen) {
     unmatched_ = seen.matched ? 0 : std::min(unmatched_ + 1, kCoast);
     stood_ = std::min(stood_ + 1, kHold);
-    since_locked_ = std::min(since_locked_ + 1, kHold);
+    const bool still_lost = since_locked_ < kHold && !seen.matched;
+    since_locked_ = still_lost ? 0 : std::min(since_locked_ + 1, kHold);
+    if (LongUnmatched()) since_locked_ = kHold;
     const SeamState wanted = Wanted(seen);
     if (wanted == state_ || !MayBecome(wanted)) return state_;
     if (state_ == SeamState::kLocked) since_locked_ = 0;

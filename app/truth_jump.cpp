@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algo/unified_options.hpp"
 #include "drivers/simulated_traffic.hpp"
 
 namespace hitchview::app {
@@ -52,6 +53,11 @@ void TruthJump::Observe(int frame, const algo::Composition& used, const Composed
     for (const Overlap overlap : algo::kOverlaps) ObserveSeam(overlap, frame, used, map);
     early_ = used;
     early_frame_ = frame;
+    for (const Overlap overlap : algo::kOverlaps) {
+        early_seam_px_[overlap].clear();
+        for (int row = 0; row <= map.block_rows(); ++row)
+            early_seam_px_[overlap].push_back(map.seam_px(overlap, row));
+    }
 }
 
 void TruthJump::ObserveSeam(Overlap overlap, int frame, const algo::Composition& used,
@@ -68,9 +74,7 @@ void TruthJump::ObserveSeam(Overlap overlap, int frame, const algo::Composition&
     std::vector<double> x;
     std::vector<double> y;
     for (int row = 0; row <= map.block_rows(); row += kRowStep) {
-        const auto col =
-            static_cast<int>(std::lround((map.seam_px(overlap, row) + 0.5) / map.block_px()));
-        const auto change = ChangeAt(frame, used, map, row, std::clamp(col, 0, map.block_cols()));
+        const auto change = ChangeAt(overlap, frame, used, map, row);
         if (!change) continue;
         x.push_back(change->x());
         y.push_back(change->y());
@@ -80,8 +84,11 @@ void TruthJump::ObserveSeam(Overlap overlap, int frame, const algo::Composition&
     figures.largest_seam_px = std::max(figures.largest_seam_px, std::hypot(Median(x), Median(y)));
 }
 
-std::optional<TruthJump::Change> TruthJump::ChangeAt(int frame, const algo::Composition& used,
-                                                     const ComposedMap& map, int row, int col) {
+std::optional<TruthJump::Change> TruthJump::ChangeAt(Overlap overlap, int frame,
+                                                     const algo::Composition& used,
+                                                     const ComposedMap& map, int row) {
+    const auto nearest = std::lround((map.seam_px(overlap, row) + 0.5) / map.block_px());
+    const int col = std::clamp(static_cast<int>(nearest), 0, map.block_cols());
     const int camera = Shower(map, row, col);
     if (camera < 0) return std::nullopt;
     const ComposedMap::Corner& corner = map.corner(camera, row, col);
@@ -91,18 +98,31 @@ std::optional<TruthJump::Change> TruthJump::ChangeAt(int frame, const algo::Comp
     const Sighting trailer =
         sight_.Find(Unit::kTrailer, frame, point->p_world_m, TruthSight::Occlusion::kTested, used);
     if (trailer.camera < 0) return std::nullopt;
-    const auto apart = [&](int at, const Vector3d& p_world_m,
-                           const algo::Composition& composition) -> std::optional<Vector2d> {
-        const Sighting a = sight_.Through(Unit::kTractor, camera, at, p_world_m, composition);
-        const Sighting b =
-            sight_.Through(Unit::kTrailer, trailer.camera, at, p_world_m, composition);
-        if (a.camera < 0 || b.camera < 0) return std::nullopt;
-        return sight_.geometry().canvas.Difference(b.canvas_px, a.canvas_px);
+    const auto shown = [&](int at, const Vector3d& p_world_m,
+                           const algo::Composition& composition) {
+        return algo::PerUnit<Sighting>{
+            {sight_.Through(Unit::kTractor, camera, at, p_world_m, composition),
+             sight_.Through(Unit::kTrailer, trailer.camera, at, p_world_m, composition)}};
     };
-    const auto late = apart(frame, point->p_world_m, used);
-    const auto early = apart(frame - 1, OneFrameBefore(frame, point->p_world_m), early_);
-    if (!late || !early) return std::nullopt;
-    return Vector2d(*late - *early);
+    const auto [late_a, late_b] = shown(frame, point->p_world_m, used).of;
+    const auto [early_a, early_b] =
+        shown(frame - 1, OneFrameBefore(frame, point->p_world_m), early_).of;
+    if (late_a.camera < 0 || late_b.camera < 0 || early_a.camera < 0 || early_b.camera < 0)
+        return std::nullopt;
+    if (!WasOnSeam(overlap, map, early_a.canvas_px)) return std::nullopt;
+    const algo::Projection& canvas = sight_.geometry().canvas;
+    return Vector2d(canvas.Difference(late_b.canvas_px, late_a.canvas_px) -
+                    canvas.Difference(early_b.canvas_px, early_a.canvas_px));
+}
+
+/// So near that the detail counted fully there.
+bool TruthJump::WasOnSeam(Overlap overlap, const ComposedMap& map,
+                          const Vector2d& canvas_px) const {
+    const double core_px = algo::ShownDetailOptions(sight_.geometry().canvas, early_.kappa).core_px;
+    const auto row = std::lround((canvas_px.y() + 0.5) / map.block_px());
+    const auto& seam_px = early_seam_px_[overlap];
+    if (row < 0 || row >= static_cast<long>(seam_px.size())) return false;
+    return std::abs(canvas_px.x() - seam_px[static_cast<std::size_t>(row)]) <= core_px;
 }
 
 /// What is on a truck moves with it; trucks drive on straight roads only.

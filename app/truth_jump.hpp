@@ -20,8 +20,8 @@ class TruthJump {
     void Observe(int frame, const algo::Composition& used, const algo::ComposedMap& map);
 
     struct Figures {
-        /// Of the seam's misalignment: the median over the scene points that lie on it, of how much
-        /// farther each is shown apart by the units than one frame before; px.
+        /// Of the seam's misalignment: the median, over the scene points that lie on it in both
+        /// frames, of how much farther each is shown apart by the units than one frame before; px.
         double largest_seam_px = 0;
         /// The same of the placement alone, for what is far away; px.
         double largest_placement_px = 0;
@@ -37,8 +37,11 @@ class TruthJump {
 
     void ObserveSeam(algo::Overlap overlap, int frame, const algo::Composition& used,
                      const algo::ComposedMap& map);
-    [[nodiscard]] std::optional<Change> ChangeAt(int frame, const algo::Composition& used,
-                                                 const algo::ComposedMap& map, int row, int col);
+    [[nodiscard]] std::optional<Change> ChangeAt(algo::Overlap overlap, int frame,
+                                                 const algo::Composition& used,
+                                                 const algo::ComposedMap& map, int row);
+    [[nodiscard]] bool WasOnSeam(algo::Overlap overlap, const algo::ComposedMap& map,
+                                 const Eigen::Vector2d& canvas_px) const;
     /// Of what is far away, on the horizon.
     [[nodiscard]] Eigen::Vector2d PlacementError(int frame, const algo::Composition& composition,
                                                  double seam_px) const;
@@ -48,6 +51,7 @@ class TruthJump {
     TruthSight sight_;
     int early_frame_ = -1;
     algo::Composition early_;
+    algo::PerOverlap<std::vector<double>> early_seam_px_;  // by row of corners
     algo::PerOverlap<Figures> figures_;
 };
 

@@ -90,12 +90,12 @@ TEST(LowSunTest, TheVehicleTurnsThroughIt) {
     EXPECT_FALSE(sees(kFront, 0));
     EXPECT_TRUE(sees(kLeft, 150) && sees(kLeftFront, 150)) << "in the overlap";
     EXPECT_TRUE(sees(kFront, 299));
-    EXPECT_FALSE(sees(kLeft, 299));
+    EXPECT_FALSE(sees(kRear, 299));
 }
 
-TEST(SimulatedScenarioTest, ATruckStaysBesideTheHitchForFourSeconds) {
+TEST(SimulatedScenarioTest, ATruckComesFillsTheLeftOverlapForFourSecondsAndMoreAndGoes) {
     const auto rig = tests::Rig(Small("truck_in_overlap"));
-    int frames = 0;
+    std::string filled;
     for (int frame = 0; frame < rig->options().frames; ++frame) {
         bool fills = true;
         for (const int camera : {kLeftFront, kLeft}) {
@@ -103,10 +103,11 @@ TEST(SimulatedScenarioTest, ATruckStaysBesideTheHitchForFourSeconds) {
                 rig->WorldPointAt(camera, frame, {kWidth_px / 2.0, kHeight_px / 2.0 - 10});
             fills = fills && seen && seen->distance_m < 6;
         }
-        frames += fills ? 1 : 0;
+        filled += fills ? 'x' : '.';
     }
-    EXPECT_GT(frames, 110);
-    EXPECT_LT(frames, 240);
+    EXPECT_NE(filled.find(std::string(120, 'x')), std::string::npos) << filled;
+    EXPECT_EQ(filled.front(), '.');
+    EXPECT_EQ(filled.back(), '.');
 }
 
 TEST(SimulatedScenarioTest, StandingStillMovesByTheEnginesShakeAlone) {
