@@ -8,8 +8,8 @@ namespace hitchview::algo {
 
 /// State of the seam of one overlap from what each matched frame set tells (docs/algorithm.md,
 /// section 13, with the diagram). LOCKED is left at once: what is not matched is not said to be. It
-/// is entered anew kHold frames after it was left at the earliest. Between the other states there
-/// are at least kHold frames. So nothing flickers.
+/// is entered anew after kHold matched frames in a row, or at once if nothing had matched for
+/// kCoast frames. Between the other states there are at least kHold frames. So nothing flickers.
 class SeamHysteresis {
  public:
     static constexpr int kCoast = 60;  ///< frames without matches before the overlap is searched
@@ -35,7 +35,7 @@ class SeamHysteresis {
     SeamState state_ = SeamState::kNoOverlap;
     int unmatched_ = kCoast;    // frames, counted up to kCoast
     int stood_ = kHold;         // frames in this state, counted up to kHold
-    int since_locked_ = kHold;  // frames since LOCKED was left, likewise
+    int since_locked_ = kHold;  // matched frames in a row since LOCKED was left, likewise
 };
 
 }  // namespace hitchview::algo

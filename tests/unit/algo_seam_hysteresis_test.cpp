@@ -58,7 +58,16 @@ TEST_F(SeamHysteresisTest, WhatIsFoundAgainLocksAtOnce) {
     EXPECT_EQ(sut_.Update(kMatched), SeamState::kLocked);
 }
 
-TEST_F(SeamHysteresisTest, LocksAnewFiveFramesAfterItWasLost) {
+TEST_F(SeamHysteresisTest, WhereMatchesComeAndGoItCoasts) {
+    sut_.Update(kMatched);
+    ASSERT_EQ(sut_.Update(kUnmatched), SeamState::kCoast);
+    for (int i = 0; i < 20; ++i) {
+        EXPECT_EQ(After(SeamHysteresis::kHold - 1, kMatched), SeamState::kCoast) << i;
+        EXPECT_EQ(sut_.Update(kUnmatched), SeamState::kCoast) << i;
+    }
+}
+
+TEST_F(SeamHysteresisTest, LocksAnewAfterFiveMatchedFrames) {
     sut_.Update(kMatched);
     ASSERT_EQ(sut_.Update(kUnmatched), SeamState::kCoast);
     for (int i = 1; i < SeamHysteresis::kHold; ++i)
