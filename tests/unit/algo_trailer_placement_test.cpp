@@ -157,12 +157,12 @@ TEST(TrailerPlacementRingTest, NeitherPredictionNorFitLeavesTheWall) {
         return ToPose(kRing, {{heading_px, roll_rad, 0}});
     };
     const auto pairs = [](const Matrix3d& truth) {
-        PerOverlap<InterFeatures> pairs;
+        PerOverlap<InterFeatures> seen;
         for (int i = 0; i < 50; ++i) {
             const Vector2d trailer{100 + 12.0 * i, 40 + 37.0 * (i % 7)};
-            pairs[Overlap::kLeft].push_back({kRing.Pixel(truth * kRing.Ray(trailer)), trailer});
+            seen[Overlap::kLeft].push_back({kRing.Pixel(truth * kRing.Ray(trailer)), trailer});
         }
-        return pairs;
+        return seen;
     };
     const auto heading_px = [&] {
         return ToOffset(kRing, placement->M_tractor_trailer()).value.x();
