@@ -20,7 +20,6 @@ constexpr int kLockedInliers = 12;
 constexpr double kLockedShare = 0.25;  // of the pairs
 /// How far the trailer may be from where it is predicted when only the overlaps are searched.
 constexpr double kSearched_rad = 5 * std::numbers::pi / 180;
-constexpr int kCoastFrames = 60;
 constexpr float kLatticePitch_px = 9;  // of the analysis view
 /// Nodes of the parallax grid from one pair for the placement to the next.
 constexpr int kPlacementStep = 4;
@@ -84,8 +83,7 @@ void RigMotionEstimator::Reset() {
     if (articulation_) articulation_->Reset();
     for (const Overlap overlap : kOverlaps) {
         if (parallax_[overlap]) parallax_[overlap]->Reset();
-        frames_unmatched_[overlap] = kCoastFrames;
-        seams_[overlap] = SeamState::kNoOverlap;
+        seams_[overlap].Reset();
         matches_[overlap] = 0;
     }
 }
@@ -121,7 +119,7 @@ void RigMotionEstimator::FollowTrailer(const MatchGuess& guess, TaskRunner& runn
     }
     motion.matched = guess.match;
     if (guess.match) MatchUnits(guess, runner, motion, parallax);
-    motion.seams = seams_;
+    for (const Overlap overlap : kOverlaps) motion.seams[overlap] = seams_[overlap].state();
     motion.matches = matches_;
     motion.M_tractor_trailer = placement_->M_tractor_trailer();
     motion.placed = placement_->acquired();
@@ -142,8 +140,8 @@ void RigMotionEstimator::MatchUnits(const MatchGuess& guess, TaskRunner& runner,
 
 /// No overlap has agreed with the placement for so long that it is searched from nothing.
 bool RigMotionEstimator::LongUnmatched() const {
-    return std::all_of(frames_unmatched_.of.begin(), frames_unmatched_.of.end(),
-                       [](int frames) { return frames >= kCoastFrames; });
+    return std::all_of(seams_.of.begin(), seams_.of.end(),
+                       [](const SeamHysteresis& seam) { return seam.LongUnmatched(); });
 }
 
 void RigMotionEstimator::Guide(const MatchGuess& guess, TaskRunner& runner, RigMotion& motion,
@@ -253,20 +251,12 @@ void RigMotionEstimator::UpdateSeams(const RigMotion& motion) {
     for (const Overlap overlap : kOverlaps) {
         const int inliers = placement_->inliers()[overlap];
         matches_[overlap] = inliers;
-        int& unmatched = frames_unmatched_[overlap];
         const InterFeatures& pairs =
             canvas_.IsRing() ? motion.dense[overlap] : motion.inter[overlap];
-        const bool locked = inliers >= kLockedInliers &&
-                            inliers >= kLockedShare * static_cast<double>(pairs.size());
-        unmatched = locked ? 0 : std::min(unmatched + 1, kCoastFrames);
-        SeamState& seam = seams_[overlap];
-        if (unmatched == 0) {
-            seam = SeamState::kLocked;
-        } else if (!placement_->acquired() || motion.candidates[overlap] < kFewestCandidates) {
-            seam = SeamState::kNoOverlap;
-        } else {
-            seam = unmatched < kCoastFrames ? SeamState::kCoast : SeamState::kReacquire;
-        }
+        const bool matched = inliers >= kLockedInliers &&
+                             inliers >= kLockedShare * static_cast<double>(pairs.size());
+        seams_[overlap].Update(
+            {matched, placement_->acquired(), motion.candidates[overlap] >= kFewestCandidates});
     }
 }
 

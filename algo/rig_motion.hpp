@@ -6,6 +6,7 @@
 
 #include "algo/articulation.hpp"
 #include "algo/overlap_parallax.hpp"
+#include "algo/seam_hysteresis.hpp"
 #include "algo/task_runner.hpp"
 #include "algo/trailer_placement.hpp"
 #include "algo/unified_options.hpp"
@@ -96,8 +97,7 @@ class RigMotionEstimator {
     std::unique_ptr<TrailerPlacement> placement_;
     PerOverlap<std::unique_ptr<OverlapParallax>> parallax_;  // ring only
     std::unique_ptr<ArticulationEstimator> articulation_;    // ring only
-    PerOverlap<int> frames_unmatched_;
-    PerOverlap<SeamState> seams_{{SeamState::kNoOverlap, SeamState::kNoOverlap}};
+    PerOverlap<SeamHysteresis> seams_;
     PerOverlap<int> matches_;
     std::int64_t matched_ = 0;  // frame sets
     int searches_ = 0;          // for the trailer

@@ -10,6 +10,11 @@ namespace {
 
 using Eigen::Vector2f;
 
+/// Most that a unit's part may be stretched from row to row, and sheared, px per px. With 0.7 along
+/// a row and 0.05 across it, the Jacobian determinant is at least .3 x .65 - .05 x 3.5 = .02.
+constexpr float kMostStretchDown = 0.35F;
+constexpr float kMostShear = 3.5F;
+
 /// 1 up to the core, 0 beyond the fade.
 double ShareAt(double distance_px, const SeamDetailOptions& options) {
     return 1 - SmoothStep((distance_px - options.core_px) / options.fade_px);
@@ -60,6 +65,35 @@ class RowFader {
     CornerField& shown_;
 };
 
+/// Bounds the change of the whole discrepancy from row to row, beginning at the middle row. What is
+/// cut lies between its neighbours' cuts, so the bounds along the rows still hold.
+class ColumnBound {
+ public:
+    ColumnBound(const CornerField& coarse, const SeamDetailOptions& options, CornerField& shown)
+        : coarse_(coarse),
+          limit_(Vector2f(kMostShear, kMostStretchDown) * static_cast<float>(coarse.spacing_px()) /
+                 static_cast<float>(std::max(options.kappa, 1 - options.kappa))),
+          shown_(shown) {}
+
+    void Bound(int col) const {
+        const int middle = shown_.rows() / 2;
+        for (int row = middle + 1; row < shown_.rows(); ++row) Follow(row, row - 1, col);
+        for (int row = middle - 1; row >= 0; --row) Follow(row, row + 1, col);
+    }
+
+ private:
+    void Follow(int row, int before, int col) const {
+        const Vector2f change = coarse_.at(row, col) - coarse_.at(before, col);
+        const Vector2f step = shown_.at(row, col) - shown_.at(before, col) + change;
+        const Vector2f cut = step.cwiseMax(-limit_).cwiseMin(limit_);
+        if (cut != step) shown_.at(row, col) += cut - step;
+    }
+
+    const CornerField& coarse_;
+    Vector2f limit_;
+    CornerField& shown_;
+};
+
 }  // namespace
 
 void FadeFromSeams(const CornerField& coarse, const CornerField& detail, const UnitSeams& seams,
@@ -70,6 +104,8 @@ void FadeFromSeams(const CornerField& coarse, const CornerField& detail, const U
         fader.Fade(row, seams.path(Overlap::kLeft).x_px(row), 0, half - 1);
         fader.Fade(row, seams.path(Overlap::kRight).x_px(row), half, detail.cols() - 1);
     });
+    const ColumnBound bound(coarse, options, shown);
+    runner.Run(detail.cols(), [&](int col) { bound.Bound(col); });
 }
 
 }  // namespace hitchview::algo

@@ -36,6 +36,8 @@ void StitchingMotionField::Extend() {
     fit_.Fit({samples_.data(), samples_.size()}, predicted_, confidence_, field_, support_);
     confidence_ = (static_cast<float>(options_.forgetting) * confidence_ + support_).cwiseMin(1.0F);
     samples_.clear();
+    const auto most_px = static_cast<float>(options_.most_px);
+    field_ = field_.cwiseMax(-most_px).cwiseMin(most_px);
     GuardFolds(mesh_, options_.max_stretch, field_);
 }
 

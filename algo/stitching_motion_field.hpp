@@ -25,6 +25,7 @@ struct StitchingMotionFieldOptions {
     FieldFitOptions fit{};
     double forgetting = 0.8;           ///< share of a vertex's confidence that stays, per frame
     double max_stretch = kMaxStretch;  ///< of the fold guard
+    double most_px = 48;               ///< bound of the field, per axis
 };
 
 /// Stitching motion field (paper, same section), with the discrepancy e = trailer - tractor that is

@@ -26,6 +26,7 @@ void TrailerPlacement::Start(const Matrix3d& M_tractor_trailer) {
 void TrailerPlacement::Predict(const PerUnit<IntraMotion>& intra) {
     pose_ =
         intra[Unit::kTractor].M_late_early * pose_ * intra[Unit::kTrailer].M_late_early.inverse();
+    KeepWithinWall();
     inliers_ = {};
 }
 
@@ -57,6 +58,7 @@ bool TrailerPlacement::Correct(const PerOverlap<InterFeatures>& inter_features) 
     } else {
         pose_ = (Matrix3d::Identity() + gain * (correction - Matrix3d::Identity())) * pose_;
     }
+    KeepWithinWall();
     CountInliers(inter_features, 3 * options_.robust.max_sigma_px);
     return true;
 }
@@ -65,12 +67,23 @@ bool TrailerPlacement::Acquire(const PerOverlap<InterFeatures>& inter_features) 
     const auto fit = Fit(inter_features, true);
     const double fewest =
         std::max<double>(options_.acquire_inliers, options_.acquire_share * pairs_.count());
-    if (!fit || fit->inliers < fewest) return false;
+    if (!fit || fit->inliers < fewest || !IsWithinWall(fit->model)) return false;
     pose_ = fit->model;
     acquired_ = true;
     frames_since_acquired_ = 0;
     CountInliers(inter_features, 3 * options_.acquire.max_sigma_px);
     return true;
+}
+
+bool TrailerPlacement::IsWithinWall(const Matrix3d& pose) const {
+    const Eigen::Vector3d offset = ToOffset(tractor_view_, pose).value;
+    return (offset.cwiseAbs().array() <= options_.wall.array()).all();
+}
+
+void TrailerPlacement::KeepWithinWall() {
+    if (!tractor_view_.IsRing() || IsWithinWall(pose_)) return;
+    const Eigen::Vector3d offset = ToOffset(tractor_view_, pose_).value;
+    pose_ = ToPose(tractor_view_, {offset.cwiseMin(options_.wall).cwiseMax(-options_.wall)});
 }
 
 bool TrailerPlacement::Agrees(const InterFeature& feature, double limit_px) const {

@@ -20,13 +20,14 @@ struct TrailerPlacementOptions {
     int min_inliers = 12;
     int acquire_inliers = 16;
     double acquire_share = 0.25;  ///< of the pairs that agree
-    int coast_frames = 60;        ///< without matches before the overlap is searched from nothing
+    /// Bound of the pose, as a PoseOffset.
+    Eigen::Vector3d wall = Eigen::Vector3d::Constant(1e9);
 };
 
 /// Where the trailer's view lies on the tractor's (docs/algorithm.md, section 7): the pose of rays,
 /// tractor from trailer, of the raw views at each moment. Predicted by the intra motions of both
 /// units, which carry the fast part exactly, and corrected by inter features with a gain. From
-/// images alone.
+/// images alone. What would leave the wall stays at it: no vehicle bends so far.
 class TrailerPlacement {
  public:
     TrailerPlacement(const Projection& tractor_view, const Projection& trailer_view,
@@ -51,6 +52,8 @@ class TrailerPlacement {
 
  private:
     std::optional<MagsacFit> Fit(const PerOverlap<InterFeatures>& inter_features, bool acquire);
+    [[nodiscard]] bool IsWithinWall(const Eigen::Matrix3d& pose) const;
+    void KeepWithinWall();
     void CountInliers(const PerOverlap<InterFeatures>& inter_features, double limit_px);
 
     Projection tractor_view_;

@@ -82,9 +82,24 @@ double MaxMeshParallax_px(const Projection& canvas) {
     return canvas.IsRing() ? kRing_rad * canvas.focal_px : MaxParallax_px(canvas);
 }
 
+double MostDiscrepancy_px(const Projection& canvas) {
+    return 2 * MaxMeshParallax_px(canvas);
+}
+
+double MostDetail_px(const Projection& canvas) {
+    return MaxParallax_px(canvas) + MostDiscrepancy_px(canvas);
+}
+
+Eigen::Vector3d MostPlacement(const Projection& view) {
+    constexpr double kUnbounded = 1e9;
+    if (!view.IsRing()) return Eigen::Vector3d::Constant(kUnbounded);
+    return {110 * kDegree * view.focal_px, 20 * kDegree, 20 * kDegree};
+}
+
 StitchingMotionFieldOptions StitchingOptions(const Projection& canvas, double kappa) {
     StitchingMotionFieldOptions options;
     options.kappa = kappa;
+    options.most_px = MostDiscrepancy_px(canvas);
     options.fit.fade_px = 0.055 * canvas.width_px;
     if (canvas.IsRing()) {  // samples are dense, and the ground tilts with each unit
         options.max_stretch = kMaxStretch / std::max(kappa, 1 - kappa);
@@ -178,6 +193,7 @@ TrailerPlacementOptions PlacementOptions(const Projection& canvas, double analys
     TrailerPlacementOptions options;
     // The intra motions carry what is fast; what matching adds per frame is noise and parallax.
     if (canvas.IsRing()) options.gain = 0.1;
+    options.wall = MostPlacement(canvas);
     options.robust.max_sigma_px /= analysis_scale;
     options.acquire.max_sigma_px /= analysis_scale;
     return options;

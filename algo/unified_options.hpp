@@ -37,6 +37,15 @@ double MaxParallax_px(const Projection& canvas);
 /// Pairs farther from it than this are left to the detail of the seams; canvas px.
 double MaxMeshParallax_px(const Projection& canvas);
 
+/// Bound of the stitching field, per axis: twice the pairs that it is fitted to, as a plane through
+/// pairs in one part of a cell goes on beyond them; canvas px.
+double MostDiscrepancy_px(const Projection& canvas);
+/// Bound of the detail at the seams, per axis: what it is fitted to, less the field; canvas px.
+double MostDetail_px(const Projection& canvas);
+/// Bound of where the trailer's view may lie on the tractor's, as a PoseOffset; plane: none.
+/// Placement differs from articulation by up to 19 degrees (docs/algorithm.md, section 7).
+Eigen::Vector3d MostPlacement(const Projection& view);
+
 /// The stages' options for pictures of this kind and size: one place for what was tuned.
 /// `overlap_rad`: ring only, how much of the horizon both units see where that is least.
 UnitAnalysisOptions AnalysisOptions(const Projection& view, double overlap_rad);

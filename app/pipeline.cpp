@@ -124,7 +124,8 @@ void Pipeline::ReleaseShown() {
 
 const ShownPanorama* Pipeline::Show(const algo::Composition& composition) {
     const FrameSet& set = held_[shown_ % held_.size()];
-    const algo::RigFrames frames = Borrow(set);
+    shown_frames_ = Borrow(set);
+    const algo::RigFrames& frames = shown_frames_;
     const algo::RigPictures pictures{frames, gains_};
     {
         const StageTimer timer(times_, Stage::kMap);

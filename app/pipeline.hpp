@@ -71,6 +71,8 @@ class Pipeline {
     /// blending, black where it has no data. Borrowed like the panorama.
     hal::FrameView RenderView(algo::Unit unit);
 
+    /// What the panorama shown last was made of. Borrowed like it.
+    [[nodiscard]] algo::RigPictures shown_pictures() const { return {shown_frames_, gains_}; }
     [[nodiscard]] const AllStageTimes& times() const { return times_; }
     [[nodiscard]] const algo::ComposedMap& map() const { return map_; }
     [[nodiscard]] const hal::FrameFormat& format() const { return format_; }
@@ -97,6 +99,7 @@ class Pipeline {
     std::array<FrameSet, algo::kMaxLookahead + 1> held_;
     ShownSets* shown_sets_ = nullptr;
     CameraWatch* watch_ = nullptr;
+    algo::RigFrames shown_frames_;
     std::uint64_t taken_ = 0;
     std::uint64_t shown_ = 0;
     ShownPanorama result_;

@@ -5,6 +5,7 @@
 
 #include "algo/offline_unified_vertex_motion.hpp"
 #include "algo/unified_vertex_motion.hpp"
+#include "app/safety_meter.hpp"
 #include "app/scenario_frames.hpp"
 #include "app/scenario_meter.hpp"
 #include "app/scenario_pictures.hpp"
@@ -66,8 +67,10 @@ class Drive {
           frames_(rig, HeldSets(options) + 2, cache, workers_),
           motion_(MakeMotion(geometry, options)),
           pipeline_(geometry, *motion_.any, workers_),
-          meter_(rig, geometry),
-          pictures_(pictures) {}
+          safety_(rig, geometry),
+          pictures_(pictures) {
+        if (!options.safety_alone) meter_.emplace(rig, geometry);
+    }
 
     json Run(const std::atomic<bool>& stop) {
         Prime();
@@ -75,7 +78,8 @@ class Drive {
         for (int frame = 0; frame < frames_to_show_ && !stop; ++frame)
             Look(pipeline_.Process(frames_.Take(frame)));
         while (const ShownPanorama* shown = pipeline_.Flush()) Look(shown);
-        json figures = meter_.Figures();
+        json figures = meter_ ? meter_->Figures() : json();
+        figures["safety"] = safety_.Figures();
         figures["stage_p50_ms"] = StageJson(pipeline_.times());
         pipeline_.Start();  // gives the last leases back while the pools live
         return figures;
@@ -100,13 +104,18 @@ class Drive {
 
     void Look(const ShownPanorama* shown) {
         if (shown == nullptr) return;
-        meter_.Observe(*shown, pipeline_.map());
-        const int frame = static_cast<int>(shown->picture.header.sequence);
-        for (const algo::Overlap overlap : algo::kOverlaps) {
-            if (const auto error_px = meter_.StripError_px(frame, overlap))
-                pictures_.OfferSeam(overlap, *error_px, *shown, pipeline_);
-        }
+        safety_.Observe(*shown, pipeline_.map(), pipeline_.shown_pictures());
         pictures_.OfferPanorama(*shown);
+        if (meter_) Measure(*shown);
+    }
+
+    void Measure(const ShownPanorama& shown) {
+        meter_->Observe(shown, pipeline_.map());
+        const int frame = static_cast<int>(shown.picture.header.sequence);
+        for (const algo::Overlap overlap : algo::kOverlaps) {
+            if (const auto error_px = meter_->StripError_px(frame, overlap))
+                pictures_.OfferSeam(overlap, *error_px, shown, pipeline_);
+        }
     }
 
     int frames_to_show_;
@@ -114,7 +123,8 @@ class Drive {
     ScenarioFrames frames_;
     Motion motion_;
     Pipeline pipeline_;
-    ScenarioMeter meter_;
+    SafetyMeter safety_;
+    std::optional<ScenarioMeter> meter_;
     ScenarioPictures& pictures_;
 };
 

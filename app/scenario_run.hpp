@@ -15,6 +15,7 @@ struct ScenarioRunOptions {
     std::optional<int> frames;  ///< stop after so many frame sets
     int lookahead_frames = 0;   ///< [0, kMaxLookaheadFrames]; no meaning offline
     bool offline = false;       ///< the paper's form: all frames are seen before one is shown
+    bool safety_alone = false;  ///< without the figures of quality, in a third of the time
     int canvas_width_px = 2048;
     int workers = 2;              ///< [1, kMaxWorkers]
     std::filesystem::path out;    ///< folder for pictures; empty: none

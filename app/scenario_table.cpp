@@ -42,6 +42,10 @@ constexpr std::array kColumns{
     Column{"waitR", "/seam/right/longest_wait_s", 5, 1},
     Column{"jumpL", "/seam/left/largest_field_jump_px", 5, 1},
     Column{"jumpR", "/seam/right/largest_field_jump_px", 5, 1},
+    Column{"folds", "/safety/folded_cells", 6, 0},
+    Column{"bound", "/safety/largest_offset_share", 5, 2},
+    Column{"leap", "/safety/largest_locked_jump_px", 5, 1},
+    Column{"stale", "/safety/stale_bytes", 5, 0},
     Column{"ms", "/stage_p50_ms/total", 5, 1},
 };
 
@@ -73,8 +77,10 @@ std::string ScenarioHead() {
         "median and "
         "p95,\nlocked (*: all frames); near: 4 to 10 m. ovl, orac: whole overlap and oracle, px. "
         "theta: deg.\nfold: cells, A tractor, B trailer. cell, view: least stretch ratio. cov: of "
-        "what geometry allows.\nwait: longest, s. jump: of the field, px. ms: a frame set, "
-        "median.\n" +
+        "what geometry allows.\nwait: longest, s. jump: of the field, px. folds: cells as drawn. "
+        "bound: "
+        "largest share of an offset's bound.\nleap: of a locked seam beside the true motion, px. "
+        "stale: bytes that depend on earlier pictures. ms: a frame set, median.\n" +
         Name("scenario");
     for (const Column& column : kColumns) {
         char text[32];

@@ -5,6 +5,7 @@
 
 #include "app/truth_calibration.hpp"
 #include "drivers/simulated_can_bus.hpp"
+#include "drivers/simulated_scenario.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -51,8 +52,11 @@ hal::Checked<std::filesystem::path> WriteSimulatedBoard(const SimulatedBoardOpti
     if (refused) return folder.string() + ": cannot be made: " + refused.message();
     const Table cameras =
         drivers::SimulatedRigGeometry(options.camera_width_px, options.camera_width_px * 9 / 16);
+    const drivers::Scenario* scenario = drivers::FindScenario(options.scenario);
+    const Table calibrated =
+        scenario ? drivers::Miscalibrated(cameras, scenario->options.calibration) : cameras;
     const std::string saved =
-        calib::SaveCalibration(CalibrationOf(cameras), folder / "rig.calib.yaml");
+        calib::SaveCalibration(CalibrationOf(calibrated), folder / "rig.calib.yaml");
     if (!saved.empty()) return saved;
     const std::filesystem::path rig = folder / "rig.yaml";
     std::ofstream out(rig);

@@ -16,7 +16,9 @@ calib::RigCalibration CalibrationOf(const drivers::SimulatedRigGeometryTable& ca
 
 calib::RigCalibration CalibrationOf(const drivers::SimulatedRig& rig) {
     const hal::FrameFormat format = rig.format();
-    return CalibrationOf(drivers::SimulatedRigGeometry(format.width_px, format.height_px));
+    return CalibrationOf(
+        drivers::Miscalibrated(drivers::SimulatedRigGeometry(format.width_px, format.height_px),
+                               rig.options().calibration));
 }
 
 }  // namespace hitchview::app

@@ -5,8 +5,9 @@
 
 namespace hitchview::app {
 
-/// The simulated rig's own geometry as a calibration of its cameras.
+/// This geometry as a calibration of its cameras.
 calib::RigCalibration CalibrationOf(const drivers::SimulatedRigGeometryTable& cameras);
+/// The simulated rig's own geometry, with the errors that its options ask for.
 calib::RigCalibration CalibrationOf(const drivers::SimulatedRig& rig);
 
 }  // namespace hitchview::app

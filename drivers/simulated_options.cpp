@@ -14,6 +14,8 @@ namespace {
 constexpr double kMaxSlalomHeading_rad = 1.05;
 
 constexpr double kMostEvents = 1000;  // of one kind in a drive
+constexpr double kTurn_rad = 2 * std::numbers::pi;
+constexpr double kLastCamera = 7;
 
 struct Bound {
     const char* key;
@@ -65,6 +67,12 @@ void AddScene(std::vector<Bound>& bounds, const SimulationOptions& o) {
         bounds.push_back({"scene.trucks.across_m", truck.across_m, -20, 20});
         bounds.push_back({"scene.trucks.speed_mps", truck.speed_mps, -50, 50});
     }
+    bounds.push_back({"scene.lens_drops", static_cast<double>(scene.lens_drops), 0, 1000});
+    if (scene.sun) {
+        bounds.push_back({"scene.sun.azimuth_rad", scene.sun->azimuth_rad, -kTurn_rad, kTurn_rad});
+        bounds.push_back({"scene.sun.elevation_rad", scene.sun->elevation_rad, 0, kTurn_rad / 4});
+        bounds.push_back({"scene.sun.strength", scene.sun->strength, 0, 10});
+    }
     if (!scene.tunnel) return;
     const double from_m = scene.tunnel->from_m;
     bounds.push_back({"scene.tunnel with profile", static_cast<double>(o.profile), 0, 0});
@@ -73,7 +81,6 @@ void AddScene(std::vector<Bound>& bounds, const SimulationOptions& o) {
 }
 
 void AddSensor(std::vector<Bound>& bounds, const SensorOptions& sensor) {
-    constexpr double kLastCamera = 7;
     bounds.push_back({"sensor.gain", sensor.gain, 0.1, 10});
     bounds.push_back(
         {"number of gain_steps", static_cast<double>(sensor.gain_steps.size()), 0, kMostEvents});
@@ -87,6 +94,17 @@ void AddSensor(std::vector<Bound>& bounds, const SensorOptions& sensor) {
     for (const SensorOptions::Outage& outage : sensor.outages) {
         bounds.push_back({"sensor.outages.camera", 1.0 * outage.camera, 0, kLastCamera});
         bounds.push_back({"sensor.outages.first_frame", 1.0 * outage.first_frame, 0, 36000});
+    }
+}
+
+void AddCalibration(std::vector<Bound>& bounds, const CalibrationErrors& errors) {
+    constexpr double kMostTurned_rad = 0.5;
+    bounds.push_back({"calibration.hitch_m", errors.hitch_m, -2, 2});
+    for (const CalibrationErrors::Turn& turn : errors.turns) {
+        bounds.push_back({"calibration.turns.camera", 1.0 * turn.camera, 0, kLastCamera});
+        for (const double angle_rad : {turn.roll_rad, turn.pitch_rad, turn.yaw_rad})
+            bounds.push_back(
+                {"angle of calibration.turns", angle_rad, -kMostTurned_rad, kMostTurned_rad});
     }
 }
 
@@ -113,6 +131,7 @@ std::vector<Bound> Bounds(const SimulationOptions& o) {
     AddScript(bounds, "hitch_angle", o.hitch_angle, 1.4);
     AddScene(bounds, o);
     AddSensor(bounds, o.sensor);
+    AddCalibration(bounds, o.calibration);
     return bounds;
 }
 

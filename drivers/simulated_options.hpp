@@ -48,6 +48,12 @@ struct SceneOptions {
         double across_m = 0;  ///< left of the driven lane
         double speed_mps = 0;
     };
+    /// Low enough to shine into the lenses.
+    struct Sun {
+        double azimuth_rad = 0;  ///< world frame, positive to the left of where the drive starts
+        double elevation_rad = 0;
+        double strength = 1;
+    };
 
     Ground ground = Ground::kRoad;
     double density = 1;              ///< share of the things along the road that stand there
@@ -57,6 +63,8 @@ struct SceneOptions {
     int snowflakes = 0;              ///< within three metres of each camera
     std::optional<Tunnel> tunnel{};  ///< on a straight road only
     std::vector<Truck> trucks{};
+    std::optional<Sun> sun{};
+    int lens_drops = 0;  ///< of rain, on each lens
 };
 
 /// What the cameras do to the light, beside the spread of their gains.
@@ -80,6 +88,18 @@ struct SensorOptions {
     std::vector<Outage> outages{};
 };
 
+/// By how much the calibration that the pipeline is given differs from what is true.
+struct CalibrationErrors {
+    /// The camera is said to be turned by this beside what it is, about its own body's axes.
+    struct Turn {
+        int camera = 0;
+        double roll_rad = 0, pitch_rad = 0, yaw_rad = 0;
+    };
+
+    std::vector<Turn> turns{};
+    double hitch_m = 0;  ///< the hitch point is said to lie so far before where the trailer has it
+};
+
 /// Everything that decides what the simulated cameras and CAN bus deliver. Equal options, equal
 /// bytes.
 struct SimulationOptions {
@@ -100,8 +120,9 @@ struct SimulationOptions {
     double noise_sigma = 1.0;   ///< grey levels, of each pixel alone
     SceneOptions scene{};
     SensorOptions sensor{};
+    CalibrationErrors calibration{};      ///< the pictures know nothing of it
     std::optional<SheetOptions> sheet{};  ///< held before each camera
-    int render_threads = 2;  ///< threads that share one image; 1: the caller's alone
+    int render_threads = 2;               ///< threads that share one image; 1: the caller's alone
 };
 
 /// Done, or the first option out of range with its value and the range allowed.

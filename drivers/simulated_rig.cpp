@@ -58,14 +58,19 @@ algo::CameraModel Lens(int width_px, int height_px) {
     return lens;
 }
 
+/// x right, y down, z forward to x forward, y left, z up.
+Eigen::Matrix3d BodyFromCamera() {
+    Eigen::Matrix3d R;
+    R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    return R;
+}
+
 Isometry3d MountPose(const Mount& mount) {
-    Eigen::Matrix3d R_level_camera;  // x right, y down, z forward to x forward, y left, z up
-    R_level_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     Isometry3d T = Isometry3d::Identity();
     T.translate(Vector3d{mount.x_m, mount.y_m, kMountHeight_m});
     T.rotate(Eigen::AngleAxisd(mount.yaw_rad, Vector3d::UnitZ()) *
              Eigen::AngleAxisd(kPitchDown_rad, Vector3d::UnitY()));
-    T.rotate(R_level_camera);
+    T.rotate(BodyFromCamera());
     return T;
 }
 
@@ -86,6 +91,24 @@ SimulatedRigGeometryTable SimulatedRigGeometry(int width_px, int height_px) {
     return table;
 }
 
+SimulatedRigGeometryTable Miscalibrated(SimulatedRigGeometryTable cameras,
+                                        const CalibrationErrors& errors) {
+    for (const CalibrationErrors::Turn& turn : errors.turns) {
+        const Eigen::Matrix3d R_body_camera = BodyFromCamera();
+        const Eigen::Matrix3d R_turn = (Eigen::AngleAxisd(turn.yaw_rad, Vector3d::UnitZ()) *
+                                        Eigen::AngleAxisd(turn.pitch_rad, Vector3d::UnitY()) *
+                                        Eigen::AngleAxisd(turn.roll_rad, Vector3d::UnitX()))
+                                           .toRotationMatrix();
+        Isometry3d& T = cameras[static_cast<std::size_t>(turn.camera)].geometry.T_unit_camera;
+        T.linear() = T.linear() * R_body_camera.transpose() * R_turn * R_body_camera;
+    }
+    for (SimulatedCameraGeometry& camera : cameras) {
+        if (camera.unit == algo::Unit::kTrailer)
+            camera.geometry.T_unit_camera.translation().x() -= errors.hitch_m;
+    }
+    return cameras;
+}
+
 hal::Checked<std::unique_ptr<SimulatedRig>> SimulatedRig::Create(const SimulationOptions& options) {
     if (const auto checked = CheckOptions(options); !checked.ok()) return checked.error();
     return std::unique_ptr<SimulatedRig>(new SimulatedRig(options));
@@ -97,7 +120,10 @@ SimulatedRig::SimulatedRig(const SimulationOptions& options)
       motion_(options),
       world_(options, motion_.PathOffRoad()),
       renderer_(world_, cameras_[0].geometry.model),
-      snowfall_(options.scene.snowflakes, Hash(options.seed, 500)) {
+      snowfall_(options.scene.snowflakes, Hash(options.seed, 500)),
+      drops_(options.scene.lens_drops, options.width_px, options.height_px,
+             Hash(options.seed, 700)) {
+    if (options.scene.sun) sun_.emplace(*options.scene.sun, cameras_[0].geometry.model);
     if (options.sheet)
         sheet_.emplace(*options.sheet, cameras_[0].geometry.model, Hash(options.seed, 600));
     if (!options.sensor.auto_exposure) return;
@@ -168,6 +194,11 @@ void SimulatedRig::Render(int camera_index, int frame, Renderer::Workspace& work
                       static_cast<float>(options_.noise_sigma), noise_seed},
                      options_.render_threads, workspace, out_nv12);
     if (options_.scene.snowflakes > 0) DrawSnow(camera_index, frame, out_nv12);
+    if (sun_) DrawSun(camera_index, frame, out_nv12);
+    if (options_.scene.lens_drops > 0)
+        drops_.DrawOver(camera_index,
+                        std::chrono::duration<double>(FrameTime(options_, frame)).count(),
+                        out_nv12);
     if (sheet_) sheet_->DrawOver(camera_index, frame, GainAt(camera_index, frame), out_nv12);
 }
 
@@ -183,6 +214,24 @@ void SimulatedRig::DrawSnow(int camera_index, int frame, std::span<std::uint8_t>
          std::chrono::duration<double>(opens).count(),
          std::chrono::duration<double>(kShutter).count(), GainAt(camera_index, frame)},
         nv12);
+}
+
+/// Rays to the middle and round it tell how much of the disc is free.
+void SimulatedRig::DrawSun(int camera_index, int frame, std::span<std::uint8_t> nv12) const {
+    constexpr int kRays = 12;
+    constexpr double kRing_rad = 0.5 * kDegree;
+    const Isometry3d T_world_camera = CameraPoseAt(camera_index, frame);
+    const Outlook outlook = OutlookOf(camera_index, frame);
+    const Vector3d across = sun_->direction().unitOrthogonal();
+    const auto is_free = [&](const Vector3d& direction) {
+        return outlook.DistanceTo(direction.normalized()) >= kFar_m ? 1 : 0;
+    };
+    int free = is_free(sun_->direction());
+    for (int i = 0; i < kRays; ++i) {
+        const Eigen::AngleAxisd round(2 * std::numbers::pi * i / kRays, sun_->direction());
+        free += is_free(sun_->direction() + std::tan(kRing_rad) * (round * across));
+    }
+    sun_->DrawOver({T_world_camera, free / (kRays + 1.0), GainAt(camera_index, frame)}, nv12);
 }
 
 Isometry3d SimulatedRig::PoseAt(int frame, algo::Unit unit, Shaking shaking) const {

@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "algo/camera_model.hpp"
+#include "drivers/simulated_drops.hpp"
 #include "drivers/simulated_exposure.hpp"
 #include "drivers/simulated_motion.hpp"
 #include "drivers/simulated_outlook.hpp"
 #include "drivers/simulated_renderer.hpp"
 #include "drivers/simulated_sheet.hpp"
 #include "drivers/simulated_snowfall.hpp"
+#include "drivers/simulated_sun.hpp"
 
 namespace hitchview::drivers {
 
@@ -30,6 +32,9 @@ using SimulatedRigGeometryTable = std::array<SimulatedCameraGeometry, 8>;
 /// Lenses of 120 degrees across and mounts of the eight cameras, for images of this size (even, not
 /// taller than wide).
 SimulatedRigGeometryTable SimulatedRigGeometry(int width_px, int height_px);
+/// What a calibration with these errors says of them.
+SimulatedRigGeometryTable Miscalibrated(SimulatedRigGeometryTable cameras,
+                                        const CalibrationErrors& errors);
 
 /// A drive with a tractor-trailer: what its eight cameras see and what is true. The side cameras
 /// next to the hitch, left_front and left (right_front and right), are 1.8 m apart when the vehicle
@@ -97,6 +102,7 @@ class SimulatedRig {
     [[nodiscard]] Moment MomentOf(int frame) const;
     [[nodiscard]] double LightAround(int camera_index, int frame) const;
     void DrawSnow(int camera_index, int frame, std::span<std::uint8_t> nv12) const;
+    void DrawSun(int camera_index, int frame, std::span<std::uint8_t> nv12) const;
 
     SimulationOptions options_;
     SimulatedRigGeometryTable cameras_;
@@ -104,6 +110,8 @@ class SimulatedRig {
     World world_;
     Renderer renderer_;
     Snowfall snowfall_;
+    LensDrops drops_;
+    std::optional<LowSun> sun_;
     std::optional<HeldSheet> sheet_;
     std::optional<AutoExposure> auto_exposure_;
 };

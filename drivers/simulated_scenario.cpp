@@ -115,6 +115,67 @@ SimulationOptions CameraLost() {
     return options;
 }
 
+SimulationOptions Rain() {
+    SimulationOptions options = Straight();
+    options.scene.visibility_m = 260;
+    options.scene.overcast = 0.95;
+    options.scene.lens_drops = 45;
+    return options;
+}
+
+/// Half a right angle to the left for each 5 s; the sun stands before the cameras next to the hitch
+/// on the left after 5 s and before the front camera at the end.
+SimulationOptions LowSunAhead() {
+    SimulationOptions options;
+    options.profile = DriveProfile::kTurnLeft;
+    options.curvature_per_m = 0.02;
+    options.scene.sun =
+        SceneOptions::Sun{.azimuth_rad = 125 * kDegree, .elevation_rad = 11 * kDegree};
+    options.sensor.auto_exposure = true;
+    return options;
+}
+
+/// Comes from behind, stays level with the hitch from the third to the seventh second, goes on.
+SimulationOptions TruckInOverlap() {
+    SimulationOptions options = Straight();
+    options.speed = {{2, 4}, {3, 8}, {7, 8}, {8, 4}};
+    options.scene.trucks = {{.start_m = -10.6, .across_m = 3.6, .speed_mps = 8}};
+    return options;
+}
+
+/// The engine shakes the tractor, and what it is coupled to a little.
+SimulationOptions StandingStill() {
+    SimulationOptions options = Straight();
+    options.speed_mps = 0;
+    const ShakeOptions engine{.roll_pitch_rad = 0.001,
+                              .yaw_rad = 0.0003,
+                              .translation_m = 0.0006,
+                              .lowest_hz = 9,
+                              .highest_hz = 14};
+    options.shake = {{engine, engine}};
+    options.shake[Unit::kTrailer].scale = 0.4;
+    return options;
+}
+
+/// The trailer is coupled for 4 s.
+SimulationOptions Coupling() {
+    constexpr int kCoupled = 75, kUncoupled = 195, kNeverAgain = 36000;
+    SimulationOptions options = Straight();
+    for (int camera = kLeft; camera <= kRight; ++camera) {
+        options.sensor.outages.push_back({camera, 0, kCoupled});
+        options.sensor.outages.push_back({camera, kUncoupled, kNeverAgain});
+    }
+    return options;
+}
+
+SimulationOptions WrongCalibration() {
+    SimulationOptions options;
+    options.calibration.turns = {{.camera = kLeft, .yaw_rad = 3 * kDegree},
+                                 {.camera = kFront, .roll_rad = 2 * kDegree}};
+    options.calibration.hitch_m = 0.3;
+    return options;
+}
+
 std::vector<Scenario> MakeScenarios() {
     return {
         {"straight", "straight ahead, the usual vibration", Straight()},
@@ -131,6 +192,13 @@ std::vector<Scenario> MakeScenarios() {
         {"exposure_steps", "the cameras' gains jump independently", ExposureSteps()},
         {"textureless_yard", "plain grey ground with few things on it", TexturelessYard()},
         {"camera_lost", "a tractor and a trailer camera drop out for 2 s each", CameraLost()},
+        {"rain", "drops on the lenses, grey sky", Rain()},
+        {"low_sun", "turns through a low sun that blinds one camera after another", LowSunAhead()},
+        {"truck_in_overlap", "a truck stays beside the hitch for 4 s", TruckInOverlap()},
+        {"standing_still", "stands with its engine running", StandingStill()},
+        {"coupling", "the trailer's cameras are there for 4 s only", Coupling()},
+        {"wrong_calibration", "cameras and hitch point are not where the calibration says",
+         WrongCalibration()},
     };
 }
 

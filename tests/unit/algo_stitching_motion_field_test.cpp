@@ -128,6 +128,16 @@ TEST_P(EveryCanvasTest, NothingFoldsWhereTheDiscrepancyJumps) {
     }
 }
 
+TEST_P(EveryCanvasTest, TheFieldStaysWithinItsBoundWhateverThePairsSay) {
+    const auto field = std::make_unique<StitchingMotionField>(
+        canvas_, StitchingMotionFieldOptions{.fit = kFit, .most_px = 5});
+    Converge(*field, PairsIn(canvas_, 500, 760, [](const Vector2d&) { return Vector2d(9, -14); }));
+    const Vector2d at = Sample(field->mesh(), field->discrepancy(), {640, canvas_.height_px / 2.0});
+    EXPECT_NEAR(at.x(), 5, 0.05);
+    EXPECT_NEAR(at.y(), -5, 0.05);
+    EXPECT_LE(field->discrepancy().cwiseAbs().maxCoeff(), 5);
+}
+
 TEST_P(EveryCanvasTest, NoPairsLeaveTheFieldAtRestAndResetForgets) {
     Converge(*field_, {}, 3);
     EXPECT_EQ(field_->discrepancy(), VertexField::Zero());

@@ -149,6 +149,41 @@ TEST_P(TrailerPlacementTest, APairAgreesIfThePosePutsItWithinTheLimit) {
 INSTANTIATE_TEST_SUITE_P(Views, TrailerPlacementTest, testing::Values(kPlane, kRing),
                          [](const auto& test) { return test.param.IsRing() ? "Ring" : "Plane"; });
 
+TEST(TrailerPlacementRingTest, NeitherPredictionNorFitLeavesTheWall) {
+    const Eigen::Vector3d wall(300, 0.1, 0.1);
+    const auto placement =
+        std::make_unique<TrailerPlacement>(kRing, kRing, TrailerPlacementOptions{.wall = wall});
+    const auto pose = [](double heading_px, double roll_rad) {
+        return ToPose(kRing, {{heading_px, roll_rad, 0}});
+    };
+    const auto pairs = [](const Matrix3d& truth) {
+        PerOverlap<InterFeatures> seen;
+        for (int i = 0; i < 50; ++i) {
+            const Vector2d trailer{100 + 12.0 * i, 40 + 37.0 * (i % 7)};
+            seen[Overlap::kLeft].push_back({kRing.Pixel(truth * kRing.Ray(trailer)), trailer});
+        }
+        return seen;
+    };
+    const auto heading_px = [&] {
+        return ToOffset(kRing, placement->M_tractor_trailer()).value.x();
+    };
+    EXPECT_FALSE(placement->Acquire(pairs(pose(320, 0))));
+    EXPECT_FALSE(placement->Acquire(pairs(pose(200, 0.12))));
+    ASSERT_TRUE(placement->Acquire(pairs(pose(290, 0))));
+    EXPECT_NEAR(heading_px(), 290, 0.1);
+
+    PerUnit<IntraMotion> turning;
+    turning[Unit::kTractor].M_late_early = pose(7, 0);
+    for (int i = 0; i < 100; ++i) {
+        placement->Predict(turning);
+        EXPECT_LE(heading_px(), 300 + 1e-6) << i;
+    }
+    EXPECT_NEAR(heading_px(), 300, 1e-6);
+    turning[Unit::kTractor].M_late_early = pose(-7, 0);
+    placement->Predict(turning);
+    EXPECT_NEAR(heading_px(), 293, 1e-6) << "what was beyond is forgotten";
+}
+
 TEST(TrailerPlacementPlaneTest, ATrailerViewOfAnotherScaleIsAcquired) {
     const auto placement =
         std::make_unique<TrailerPlacement>(kPlane, kPlane, TrailerPlacementOptions{});
