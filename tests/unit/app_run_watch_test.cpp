@@ -37,7 +37,7 @@ RunWatchOptions Options(std::vector<WatchedCamera> cameras) {
 
 FrameFigures Figures(std::uint64_t panoramas, Instant captured_until) {
     return {
-        .panoramas = panoramas, .captured_until = captured_until, .stage_ms = {1, 2, 3, 4, 5, 15}};
+        .panoramas = panoramas, .captured_until = captured_until, .stage_ms = {1, 2, 3, 4, 5, 6, 15}};
 }
 
 std::vector<hal::Event> TakeAll(EventQueue& queue) {
