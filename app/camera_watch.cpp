@@ -58,8 +58,8 @@ constexpr bool Has(std::uint32_t mask, std::size_t camera) {
 }  // namespace
 
 CameraWatch::CameraWatch(std::vector<WatchedPicture> cameras, hal::Instant period,
-                         EventQueue& events, const hal::Clock& clock)
-    : period_(period), events_(events), clock_(clock) {
+                         EventQueue& events, const hal::Clock& clock, hal::Instant patience)
+    : period_(period), events_(events), clock_(clock), patience_(patience) {
     HV_EXPECT(cameras.size() <= kMaxCameras);
     for (WatchedPicture& picture : cameras) cameras_.emplace_back(std::move(picture), period);
 }
@@ -121,7 +121,7 @@ void CameraWatch::Decide(std::size_t index, FrameSet& set, bool too_old) {
     const CameraState state = camera.judge.state();
     if (state == CameraState::kLost) camera.newest.reset();
     set.camera_states[index] = state;
-    if (state != camera.told || state == CameraState::kLost)
+    if (state != camera.told || state == CameraState::kLost || camera.lost_at)
         Tell(camera, state, Has(set.cameras_gone, index));
     if (hal::IsShown(state) && !too_old) return;
     LeaseOf(set, index).Release();
@@ -130,9 +130,14 @@ void CameraWatch::Decide(std::size_t index, FrameSet& set, bool too_old) {
 
 /// A loss that has been told is not told again, nor is its end.
 void CameraWatch::Tell(Camera& camera, CameraState state, bool device_told) {
-    camera.device_told |= device_told;
-    if (state == camera.told) return;
     const hal::Instant now = clock_.Now();
+    camera.device_told |= device_told;
+    if (state != CameraState::kLost) camera.lost_at.reset();
+    if (state == camera.told) return;
+    if (state == CameraState::kLost) {
+        if (!camera.lost_at) camera.lost_at = now;
+        if (!camera.device_told && now - *camera.lost_at < patience_) return;
+    }
     const bool known = camera.device_told && (state == CameraState::kLost ||
                                               (state == CameraState::kGood &&
                                                camera.told == CameraState::kLost));
@@ -170,6 +175,7 @@ void CameraWatch::Reset() {
         camera.sets_since_disorder = kDisorderLasts;
         camera.told = CameraState::kGood;
         camera.device_told = false;
+        camera.lost_at.reset();
     }
 }
 

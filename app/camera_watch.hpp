@@ -25,10 +25,14 @@ struct WatchedPicture {
 /// after construction. Thread: pipeline.
 class CameraWatch {
  public:
+    /// Devices of live cameras tell themselves why they give nothing, within a second; what none
+    /// has told by then is told here.
+    static constexpr hal::Instant kLivePatience = std::chrono::milliseconds(1500);
+
     /// `cameras` in the order of the bits of FrameSet::cameras_missing; `events` and `clock` must
-    /// outlive it.
+    /// outlive it. `patience`: before it is told that a camera is lost, beside what its state takes.
     CameraWatch(std::vector<WatchedPicture> cameras, hal::Instant period, EventQueue& events,
-                const hal::Clock& clock);
+                const hal::Clock& clock, hal::Instant patience = {});
 
     /// Sets camera_states; gives back the frames that must not be shown, whose cameras are missing
     /// then.
@@ -47,6 +51,7 @@ class CameraWatch {
         int sets_since_disorder = kDisorderLasts;
         hal::CameraState told = hal::CameraState::kGood;
         hal::Instant told_at{};
+        std::optional<hal::Instant> lost_at{};
         bool device_told = false;  ///< whoever captures its frames has said that it is lost
     };
 
@@ -65,6 +70,7 @@ class CameraWatch {
     hal::Instant period_;
     EventQueue& events_;
     const hal::Clock& clock_;
+    const hal::Instant patience_;
     PictureSigns pictures_;
 };
 

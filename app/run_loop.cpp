@@ -221,7 +221,8 @@ hal::Checked<RunSummary> Run(const RigConfig& config, const RunOptions& options,
     if (!outputs) return outputs.error();
     if (options.realtime) EnterRealTime(config.schedule);
     CameraWatch watch(WatchedPictures(config), (*board)->period(), (*board)->events(),
-                      (*board)->clock());
+                      (*board)->clock(),
+                      (*board)->live() != nullptr ? CameraWatch::kLivePatience : hal::Instant{});
     if (IsWatched(config, options)) pipeline.SetWatch(&watch);
     PanoramaLoop loop({**board, *motion.any, pipeline, **outputs}, options, summary);
     const auto done = loop.Run(stop, hook);

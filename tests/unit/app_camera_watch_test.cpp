@@ -24,7 +24,8 @@ constexpr std::size_t kFaulty = 1;
 class Watched {
  public:
     explicit Watched(const std::vector<CameraFault>& faults,
-                     const hal::FrameFormat& format = kFormat, std::size_t cameras = kCameras) {
+                     const hal::FrameFormat& format = kFormat, std::size_t cameras = kCameras,
+                     Instant patience = {}) {
         std::vector<WatchedPicture> pictures;
         for (std::size_t i = 0; i < cameras; ++i) {
             const auto unit = i < 2 ? algo::Unit::kTractor : algo::Unit::kTrailer;
@@ -38,7 +39,7 @@ class Watched {
             cameras_[unit].push_back(std::move(camera));
         }
         sets_.emplace(cameras_);
-        watch_.emplace(pictures, kPeriod, events_, clock_);
+        watch_.emplace(pictures, kPeriod, events_, clock_, patience);
     }
 
     /// The next set, looked at. `change` befalls it before.
@@ -220,6 +221,19 @@ TEST(CameraWatchTest, ALossThatTheDeviceHasToldIsNotToldTwice) {
     EXPECT_EQ(rig.Next(take_out).camera_states[kFaulty], CameraState::kLost);
     EXPECT_EQ(rig.After(30), CameraState::kGood);
     EXPECT_TRUE(rig.Told().empty());
+}
+
+TEST(CameraWatchTest, OfLiveCamerasALossIsLeftToTheDeviceToTellFirst) {
+    const std::vector<CameraFault> faults{{FaultKind::kSilent, 10, 40}, {FaultKind::kSilent, 100, 200}};
+    Watched rig(faults, Watched::kFormat, kCameras, CameraWatch::kLivePatience);
+    rig.After(30);
+    EXPECT_EQ(rig.After(1), CameraState::kLost);
+    rig.After(60);
+    EXPECT_TRUE(rig.Told().empty()) << "a second is over before anybody must tell";
+    rig.After(105);
+    EXPECT_EQ(rig.Told(), std::vector{EventCode::kCameraLost});
+    rig.After(30);
+    EXPECT_EQ(rig.Told(), std::vector{EventCode::kCameraBack});
 }
 
 }  // namespace
