@@ -1,8 +1,9 @@
 #include "app/faulty_camera.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
+
+#include "app/packed_frame.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -11,38 +12,6 @@ using std::chrono::milliseconds;
 
 bool TakesTheDevice(FaultKind kind) {
     return kind == FaultKind::kDead || kind == FaultKind::kOtherFormat;
-}
-
-/// Rows of a plane one after another.
-void CopyRows(const hal::Plane& plane, int row_bytes, int rows, std::uint8_t*& to) {
-    for (int row = 0; row < rows; ++row) {
-        std::memcpy(to, plane.data + static_cast<std::ptrdiff_t>(row) * plane.stride_bytes,
-                    static_cast<std::size_t>(row_bytes));
-        to += row_bytes;
-    }
-}
-
-void CopyPacked(const hal::FrameView& view, std::span<std::uint8_t> bytes) {
-    const auto& [width, height, pixel_format, range] = view.format;
-    std::uint8_t* to = bytes.data();
-    switch (pixel_format) {
-        case hal::PixelFormat::kUyvy:
-        case hal::PixelFormat::kYuyv:
-            CopyRows(view.planes[0], 2 * width, height, to);
-            return;
-        case hal::PixelFormat::kNv12:
-            CopyRows(view.planes[0], width, height, to);
-            CopyRows(view.planes[1], width, height / 2, to);
-            return;
-        case hal::PixelFormat::kI420:
-            CopyRows(view.planes[0], width, height, to);
-            CopyRows(view.planes[1], width / 2, height / 2, to);
-            CopyRows(view.planes[2], width / 2, height / 2, to);
-            return;
-        case hal::PixelFormat::kGrey:
-            CopyRows(view.planes[0], width, height, to);
-            return;
-    }
 }
 
 /// Of a tightly packed frame.
@@ -171,7 +140,7 @@ hal::Result<hal::FrameLease> FaultyCamera::Copy(const hal::FrameView& view,
                                                 const hal::FrameHeader& header) {
     const auto maybe_slot = pool_.Take();
     if (!maybe_slot) return is_live() ? hal::Error::kTimeout : hal::Error::kCorrupted;
-    CopyPacked(view, maybe_slot->bytes);
+    PackFrame(view, maybe_slot->bytes);
     Spoil(befallen_->does, maybe_slot->bytes);
     return pool_.Lease(*maybe_slot, header);
 }

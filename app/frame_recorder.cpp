@@ -1,35 +1,13 @@
 #include "app/frame_recorder.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
+#include "app/packed_frame.hpp"
 #include "app/thread_schedule.hpp"
 #include "drivers/lcm_record_messages.hpp"
 
 namespace hitchview::app {
-namespace {
-
-void CopyRows(const hal::Plane& plane, int rows, std::size_t row_bytes, std::uint8_t*& to) {
-    for (int row = 0; row < rows; ++row, to += row_bytes)
-        std::memcpy(to, plane.data + static_cast<std::ptrdiff_t>(row) * plane.stride_bytes,
-                    row_bytes);
-}
-
-/// The frame without gaps between its rows and planes. Not I420.
-std::span<const std::uint8_t> Pack(const hal::FrameView& frame, std::vector<std::uint8_t>& to) {
-    const hal::FrameFormat& format = frame.format;
-    const auto width = static_cast<std::size_t>(format.width_px);
-    const bool pairs = format.pixel_format == hal::PixelFormat::kUyvy ||
-                       format.pixel_format == hal::PixelFormat::kYuyv;
-    std::uint8_t* end = to.data();
-    CopyRows(frame.planes[0], format.height_px, pairs ? 2 * width : width, end);
-    if (format.pixel_format == hal::PixelFormat::kNv12)
-        CopyRows(frame.planes[1], format.height_px / 2, width, end);
-    return {to.data(), end};
-}
-
-}  // namespace
 
 /// A camera and what became of its frames.
 struct FrameRecorder::Channel {
@@ -130,7 +108,7 @@ void FrameRecorder::Record(Worker& worker, Channel& channel, const hal::FrameVie
         .compressed = compressed,
         .sequence = frame.header.sequence / options_.every,
         .captured_at = frame.header.captured_at + intake_.origin(),
-        .data = compressed ? channel.jpeg->Compress(frame) : Pack(frame, worker.packed)};
+        .data = compressed ? channel.jpeg->Compress(frame) : PackFrame(frame, worker.packed)};
     const auto place =
         intake_.Reserve(picture.utime_us, channel.camera.channel, drivers::MostBytesOf(picture));
     if (!place) {
