@@ -107,12 +107,20 @@ DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& opt
       smooth_(canvas, Vector2f::Zero()),
       misses_(canvas, Vector2f::Zero()),
       detail_(canvas, Vector2f::Zero()),
-      doubt_px_(canvas, static_cast<float>(options.unknown_px)) {}
+      doubt_px_(canvas, static_cast<float>(options.unknown_px)),
+      fitted_before_(canvas, Vector2f::Zero()) {}
 
 DetailField::Range DetailField::HalfOf(Overlap overlap) const {
     const int half = detail_.cols() / 2;
     const int first = overlap == Overlap::kLeft ? 0 : half;
     return {first, first + half - 1};
+}
+
+void DetailField::Reset() {
+    for (const Overlap overlap : kOverlaps) {
+        Clear(overlap);
+        fitted_before_range_[overlap] = {};
+    }
 }
 
 void DetailField::Clear(Overlap overlap) {
@@ -139,10 +147,19 @@ void DetailField::Add(Overlap overlap, const CanvasPair& pair, float weight) {
 }
 
 void DetailField::Fit(Overlap overlap, const VertexField& discrepancy) {
-    CornerSamples& samples = samples_[overlap];
-    samples.Sort();
-    const Range range = FindRange(overlap);
-    if (range.last <= range.first) return;
+    samples_[overlap].Sort();
+    Range range = FindRange(overlap);
+    if (range.last <= range.first) range = Range{};
+    const Range before = fitted_before_range_[overlap];
+    const Range both = Together(range, before);
+    LookUpMesh(discrepancy, both);
+    if (!range.empty()) FitSamples(overlap, range);
+    KeepInDoubt(before);
+    Remember(overlap, both);
+}
+
+void DetailField::FitSamples(Overlap overlap, const Range& range) {
+    const CornerSamples& samples = samples_[overlap];
     // What is near lies farther forward in the trailer's view: to the right, in the left overlap.
     const float sign = overlap == Overlap::kLeft ? 1.0F : -1.0F;
     ScanlineFit& scanlines = scanlines_[overlap];
@@ -156,9 +173,15 @@ void DetailField::Fit(Overlap overlap, const VertexField& discrepancy) {
             Settle(around, row, col, sign * scanlines.At(row, col - range.first));
         }
     }
-    Subtract(discrepancy, range);
+    Subtract(range);
     Smooth(range);
     Doubt(samples, range);
+}
+
+DetailField::Range DetailField::Together(const Range& a, const Range& b) {
+    if (a.empty()) return b;
+    if (b.empty()) return a;
+    return {std::min(a.first, b.first), std::max(a.last, b.last)};
 }
 
 /// The columns that have samples.
@@ -243,12 +266,19 @@ void DetailField::Settle(const Neighbours& around, int row, int col, float start
     support_.at(row, col) = std::max(support, kLeastSupport);
 }
 
-void DetailField::Subtract(const VertexField& discrepancy, const Range& range) {
+void DetailField::LookUpMesh(const VertexField& discrepancy, const Range& range) {
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
-            Vector2f& smooth = smooth_.at(row, col);
-            smooth = algo::Sample(mesh_, discrepancy, detail_.Pixel(row, col)).cast<float>();
-            wanted_.at(row, col) -= smooth;
+            smooth_.at(row, col) =
+                algo::Sample(mesh_, discrepancy, detail_.Pixel(row, col)).cast<float>();
+        }
+    }
+}
+
+void DetailField::Subtract(const Range& range) {
+    for (int row = 0; row < detail_.rows(); ++row) {
+        for (int col = range.first; col <= range.last; ++col) {
+            wanted_.at(row, col) -= smooth_.at(row, col);
             detail_.at(row, col) = wanted_.at(row, col);
         }
     }
@@ -278,6 +308,69 @@ void DetailField::Sweep(const Range& range) {
             detail_.at(row, col) = rest + share * detail_.at(row, col - 1);
         }
     }
+}
+
+/// What the samples do not bear out leaves what it was before by and by, moved as what is sure in
+/// its row: so it goes along when the units shake. `range`: where something was fitted before.
+void DetailField::KeepInDoubt(const Range& range) {
+    for (int row = 0; row < detail_.rows(); ++row) {
+        const Vector2f moved = SureChange(row, range);
+        for (int col = range.first; col <= range.last; ++col) {
+            const Vector2f before = fitted_before_.at(row, col) + moved - smooth_.at(row, col);
+            detail_.at(row, col) =
+                before + Step(detail_.at(row, col) - before, SurenessAt(row, col));
+        }
+    }
+}
+
+/// What a corner takes of a change, per axis.
+Vector2f DetailField::Step(const Vector2f& change_px, float sureness) const {
+    if (sureness >= 1) return change_px;
+    const auto least = static_cast<float>(options_.least_gain);
+    const Vector2f most =
+        Vector2f::Constant(static_cast<float>(options_.unsure_step_px) / (1 - sureness));
+    const float gain = least + (1 - least) * sureness;
+    return (gain * change_px).cwiseMax(-most).cwiseMin(most);
+}
+
+/// How much the whole discrepancy of a row changed, the mean over its corners by their sureness.
+Vector2f DetailField::SureChange(int row, const Range& range) const {
+    constexpr float kStill = 1;  // sure corner that did not change is added
+    Vector2f sum = Vector2f::Zero();
+    float weight = kStill;
+    for (int col = range.first; col <= range.last; ++col) {
+        const float sureness = SurenessAt(row, col);
+        sum +=
+            sureness * (detail_.at(row, col) + smooth_.at(row, col) - fitted_before_.at(row, col));
+        weight += sureness;
+    }
+    return sum / weight;
+}
+
+/// 1 where the samples agree, 0 where they do not, or are none.
+float DetailField::SurenessAt(int row, int col) const {
+    const double share =
+        (options_.unsure_px - doubt_px_.at(row, col)) / (options_.unsure_px - options_.sure_px);
+    return static_cast<float>(std::clamp(share, 0.0, 1.0));
+}
+
+bool DetailField::HasDetail(int col) const {
+    constexpr float kLeast_px = 0.25F;
+    for (int row = 0; row < detail_.rows(); ++row)
+        if (detail_.at(row, col).cwiseAbs().maxCoeff() > kLeast_px) return true;
+    return false;
+}
+
+/// Columns at the rims that have no detail any more are forgotten.
+void DetailField::Remember(Overlap overlap, const Range& range) {
+    Range kept = range;
+    while (!kept.empty() && !HasDetail(kept.first)) ++kept.first;
+    while (!kept.empty() && !HasDetail(kept.last)) --kept.last;
+    for (int row = 0; row < detail_.rows(); ++row) {
+        for (int col = kept.first; col <= kept.last; ++col)
+            fitted_before_.at(row, col) = detail_.at(row, col) + smooth_.at(row, col);
+    }
+    fitted_before_range_[overlap] = kept.empty() ? Range{} : kept;
 }
 
 void DetailField::Doubt(const CornerSamples& samples, const Range& range) {

@@ -43,7 +43,6 @@ UnifiedVertexMotion::UnifiedVertexMotion(const Projection& canvas,
         if (canvas.IsRing()) {
             parallax_ = std::make_unique<std::array<RigParallax, kRecords>>();
             detail_ = std::make_unique<DetailField>(canvas, DetailOptions(canvas, options.kappa));
-            TakeMemoryForDetail();
             for (const Unit unit : kUnits)
                 on_canvas_[unit] = std::make_unique<PictureMap>(view(unit), canvas);
         }
@@ -76,6 +75,10 @@ void UnifiedVertexMotion::Reset() {
     if (hitch_smoother_) hitch_smoother_->Reset();
     hitch_known_ = false;
     stitching_.Reset();
+    if (detail_) {
+        detail_->Reset();
+        ShowNoDetail();
+    }
 }
 
 void UnifiedVertexMotion::LayOut() {
@@ -257,7 +260,8 @@ void UnifiedVertexMotion::UpdateStitching(const RigMotion& record, const Matrix3
     stitching_.Extend();
 }
 
-void UnifiedVertexMotion::TakeMemoryForDetail() {
+/// Takes the memory for it, too.
+void UnifiedVertexMotion::ShowNoDetail() {
     composition_.detail = detail_->detail();
     composition_.detail.Clear();
     composition_.doubt_px = detail_->doubt_px();

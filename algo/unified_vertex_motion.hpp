@@ -47,7 +47,7 @@ class UnifiedVertexMotion final : public VertexMotion {
     void Stabilise(std::int64_t index, Unit unit);
     void PlaceTrailer(const RigMotion& record);
     void UpdateViewOffset(const RigMotion& record, Unit unit);
-    void TakeMemoryForDetail();
+    void ShowNoDetail();
     void UpdateDetail(const RigParallax& parallax, TaskRunner& runner);
     [[nodiscard]] RigParallax* ParallaxAt(std::int64_t index);
     void UpdateDetail(const ParallaxSamples& samples, Overlap overlap);

@@ -266,8 +266,9 @@ struct PublishConfig {
 struct RecordConfig {
     enum class Format { kJpeg, kRaw };
     enum class Trigger {
-        kSignal,      ///< SIGUSR1
-        kCameraLost,  ///< that, or a camera that is lost
+        kSignal,       ///< SIGUSR1
+        kCameraLost,   ///< that, or a camera that is lost
+        kCameraFault,  ///< that, or a camera with any fault
     };
 
     std::filesystem::path folder{};  ///< empty: nothing is recorded

@@ -15,7 +15,8 @@ using Trigger = RecordConfig::Trigger;
 constexpr std::array kFormats{Choice<Format>{"jpeg", Format::kJpeg},
                               Choice<Format>{"raw", Format::kRaw}};
 constexpr std::array kTriggers{Choice<Trigger>{"signal", Trigger::kSignal},
-                               Choice<Trigger>{"camera_lost", Trigger::kCameraLost}};
+                               Choice<Trigger>{"camera_lost", Trigger::kCameraLost},
+                               Choice<Trigger>{"camera_fault", Trigger::kCameraFault}};
 constexpr int kMostMegabytes = 10'000'000;
 
 void ReadWhen(YamlMap& map, RecordConfig& record) {

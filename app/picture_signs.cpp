@@ -1,6 +1,7 @@
 #include "app/picture_signs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 namespace hitchview::app {
@@ -17,15 +18,18 @@ constexpr float kWhiteShare = 0.6F;
 /// Parts of a picture that are looked at for its sharpness: under a smear even the sharpest are
 /// blurred, behind the plain side of a lorry some are not.
 constexpr std::size_t kSharpestCells = 8;
-/// Share of what the other cameras see below which detail counts as lost.
+/// Share of what is expected below which detail counts as lost.
 constexpr float kLostDetail = 0.1F;
 /// Detail (grey levels squared) of parts and pictures that have any.
 constexpr float kSomeDetail = 60;
 /// Of the parts that can be judged.
 constexpr float kDirtyShare = 1.0F / 6;
 constexpr int kDirtyCells = 4;
-/// What is left after a set of the most that was seen: gone after about two seconds.
-constexpr float kRemembered = 0.946F;
+/// What is left after a set of the most that was seen: gone after about a second.
+constexpr float kRemembered = 0.92F;
+/// Sets over which a camera's habit is learnt, and before which it says nothing.
+constexpr int kHabitSets = 300;
+constexpr int kFirstHabitSets = 30;
 
 float SharpnessOf(const PictureLook& look) {
     std::array<float, PictureLook::kCells> fine{};
@@ -66,55 +70,85 @@ bool PictureSigns::Repeats(Camera& camera, const algo::CameraFrame& picture) {
     return repeats;
 }
 
-std::size_t PictureSigns::Present() const {
-    return static_cast<std::size_t>(std::ranges::count(cameras_, true, &Camera::present));
-}
-
-/// Of the cameras in the set; at least one is.
+/// Of the cameras that can be compared; at least one can.
 template <typename Value>
 float PictureSigns::Median(const Value& value_of) const {
     std::array<float, kMaxCameras> values{};
     std::size_t count = 0;
     for (const Camera& camera : cameras_)
-        if (camera.present) values[count++] = value_of(camera);
+        if (camera.compared) values[count++] = value_of(camera);
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
     std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
     return *middle;
 }
 
-bool PictureSigns::IsDirty(const Camera& camera, const Cells& usual) const {
+std::size_t PictureSigns::Compared() const {
+    return static_cast<std::size_t>(std::ranges::count(cameras_, true, &Camera::compared));
+}
+
+/// `usual`: what the cameras have in that part. Expected is that, or what this one usually makes of
+/// it where that is more: a part that is richer than the others' is missed when it is as theirs.
+float PictureSigns::Habit::Expects(float usual) const {
+    return sets < kFirstHabitSets ? usual : std::max(usual, std::exp(log_share) * usual);
+}
+
+void PictureSigns::Habit::Learn(float detail, float usual) {
+    constexpr float kNothing = 1;  // grey levels squared: noise
+    const float share = std::log((detail + kNothing) / (usual + kNothing));
+    sets = std::min(sets + 1, kHabitSets);
+    log_share += (share - log_share) / static_cast<float>(sets);
+}
+
+/// What is lost is not learnt: a camera does not get used to dirt.
+bool PictureSigns::IsDirty(Camera& camera, const Cells& usual) {
     int judged = 0;
     int lost = 0;
     for (std::size_t i = 0; i < usual.size(); ++i) {
-        if (usual[i] < kSomeDetail) continue;
-        ++judged;
-        if (camera.recent[i] < kLostDetail * usual[i]) ++lost;
+        const float expected = camera.habits[i].Expects(usual[i]);
+        const bool is_judged = expected >= kSomeDetail;
+        const bool is_lost = is_judged && camera.recent[i] < kLostDetail * expected;
+        judged += is_judged ? 1 : 0;
+        lost += is_lost ? 1 : 0;
+        if (!is_lost) camera.habits[i].Learn(camera.recent[i], usual[i]);
     }
-    return lost >= kDirtyCells && static_cast<float>(lost) >= kDirtyShare * static_cast<float>(judged);
+    return lost >= kDirtyCells &&
+           static_cast<float>(lost) >= kDirtyShare * static_cast<float>(judged);
 }
 
 void PictureSigns::Finish(std::array<CameraSigns, kMaxCameras>& signs) {
-    const bool compared = Present() >= kLeastCameras;
-    Cells usual{};
-    float usual_sharpness = 0;
-    if (compared) {
-        usual_sharpness = Median([](const Camera& camera) { return camera.sharpness; });
-        for (std::size_t i = 0; i < usual.size(); ++i)
-            usual[i] = Median([i](const Camera& camera) { return camera.recent[i]; });
-    }
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
-        const Camera& camera = cameras_[i];
+        Camera& camera = cameras_[i];
+        camera.compared = false;
         if (!camera.present) continue;
-        signs[i][CameraState::kBlack] =
-            camera.look.mean < kBlackMean && camera.look.dark_share >= kBlackShare;
-        signs[i][CameraState::kBlinded] = camera.look.bright_share >= kWhiteShare;
+        const algo::PictureLook& look = camera.look;
+        signs[i][CameraState::kBlack] = look.mean < kBlackMean && look.dark_share >= kBlackShare;
+        signs[i][CameraState::kBlinded] = look.bright_share >= kWhiteShare;
         signs[i][CameraState::kFrozen] = camera.repeated;
-        const bool shows_nothing =
-            signs[i][CameraState::kBlack] || signs[i][CameraState::kBlinded];
-        if (!compared || shows_nothing) continue;
-        signs[i][CameraState::kBlurred] = usual_sharpness >= kSomeDetail &&
-                                          camera.sharpness < kLostDetail * usual_sharpness;
-        signs[i][CameraState::kDirty] = IsDirty(camera, usual);
+        camera.compared = !signs[i][CameraState::kBlack] && !signs[i][CameraState::kBlinded];
+    }
+    FindBlurred(signs);
+    FindDirty(signs);
+}
+
+/// Those that are take no further part in the comparison.
+void PictureSigns::FindBlurred(std::array<CameraSigns, kMaxCameras>& signs) {
+    if (Compared() < kLeastCameras) return;
+    const float usual = Median([](const Camera& camera) { return camera.sharpness; });
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+        if (!cameras_[i].compared) continue;
+        signs[i][CameraState::kBlurred] =
+            usual >= kSomeDetail && cameras_[i].sharpness < kLostDetail * usual;
+        cameras_[i].compared = !signs[i][CameraState::kBlurred];
+    }
+}
+
+void PictureSigns::FindDirty(std::array<CameraSigns, kMaxCameras>& signs) {
+    if (Compared() < kLeastCameras) return;
+    Cells usual{};
+    for (std::size_t i = 0; i < usual.size(); ++i)
+        usual[i] = Median([i](const Camera& camera) { return camera.recent[i]; });
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+        if (cameras_[i].compared) signs[i][CameraState::kDirty] = IsDirty(cameras_[i], usual);
     }
 }
 

@@ -11,8 +11,9 @@ namespace hitchview::app {
 
 /// Finds what is wrong with pictures. Brightness and repetition are of one picture alone; whether
 /// detail is missing is judged against what the rig's other cameras see in the same part of their
-/// pictures at that time, so that fog, night or snow are no fault of a camera: no judgement with
-/// fewer than kLeastCameras. Thread: one.
+/// pictures at that time, so that fog, night or snow are no fault of a camera, and against what the
+/// camera itself usually makes of that: no judgement with fewer than kLeastCameras that see
+/// something. Thread: one.
 class PictureSigns {
  public:
     static constexpr std::size_t kLeastCameras = 3;
@@ -32,22 +33,35 @@ class PictureSigns {
  private:
     using Cells = std::array<float, algo::PictureLook::kCells>;
 
+    /// How much of what the cameras see in one part of their pictures this one has there.
+    struct Habit {
+        [[nodiscard]] float Expects(float usual) const;
+        void Learn(float detail, float usual);
+
+        float log_share = 0;
+        int sets = 0;  ///< that it was learnt from, up to as many as it is of
+    };
+
     struct Camera {
-        bool present = false;  ///< in this set
+        bool present = false;   ///< in this set
+        bool compared = false;  ///< with the others: it shows something
         algo::PictureLook look;
         std::uint64_t print_before = 0;
         std::optional<std::uint64_t> whole_print_before;  ///< where the samples were equal, too
-        bool seems_repeated = false;  ///< its samples are as before
-        bool repeated = false;        ///< all of it is
-        float sharpness = 0;  ///< of the sharpest parts
-        Cells recent{};       ///< detail of each part, the most of the last moments
+        bool seems_repeated = false;                      ///< its samples are as before
+        bool repeated = false;                            ///< all of it is
+        float sharpness = 0;                              ///< of the sharpest parts
+        Cells recent{};  ///< detail of each part, the most of the last moments
+        std::array<Habit, algo::PictureLook::kCells> habits{};
     };
 
     static bool Repeats(Camera& camera, const algo::CameraFrame& picture);
-    [[nodiscard]] std::size_t Present() const;
+    static bool IsDirty(Camera& camera, const Cells& usual);
+    [[nodiscard]] std::size_t Compared() const;
     template <typename Value>
     [[nodiscard]] float Median(const Value& value_of) const;
-    [[nodiscard]] bool IsDirty(const Camera& camera, const Cells& usual) const;
+    void FindBlurred(std::array<CameraSigns, kMaxCameras>& signs);
+    void FindDirty(std::array<CameraSigns, kMaxCameras>& signs);
 
     std::array<Camera, kMaxCameras> cameras_;
 };

@@ -68,6 +68,20 @@ Recorder::~Recorder() {
     Finish();
 }
 
+bool Recorder::Triggers(hal::EventCode code) const {
+    using By = RecorderOptions::CameraTrigger;
+    switch (options_.camera_trigger) {
+        case By::kNone:
+            return false;
+        case By::kLost:
+            return code == hal::EventCode::kCameraLost;
+        case By::kFault:
+            return code >= hal::EventCode::kCameraLost && code <= hal::EventCode::kCameraDirty &&
+                   code != hal::EventCode::kCameraBack;
+    }
+    return false;
+}
+
 void Recorder::Start(hal::Instant origin) {
     intake_.Start(origin);
     if (!std::exchange(started_, true)) frames_.Start();

@@ -31,7 +31,7 @@ struct RecorderOptions {
     std::chrono::seconds pre_trigger{0};
     std::chrono::seconds after_trigger{
         0};  ///< ends so long after the newest trigger; 0: never; with pre_trigger only
-    bool camera_lost_triggers = false;
+    enum class CameraTrigger { kNone, kLost, kFault } camera_trigger = CameraTrigger::kNone;
     RecordIntakeOptions intake{};
     FrameRecorderOptions frames{};
     std::atomic<bool>* trigger = nullptr;  ///< set from outside, reset here; null: nobody does
@@ -58,9 +58,10 @@ class Recorder {
     void Start(hal::Instant origin);
     /// Writes what has come before the last trigger and from then on. Any thread.
     void Trigger() { triggered_ = true; }
-    /// What happened: cameras that are lost trigger, where the options say so. Any thread.
+    /// What happened: cameras that are lost, or have any fault, trigger where the options say so.
+    /// Any thread.
     void Note(const hal::Event& event) {
-        if (options_.camera_lost_triggers && event.code == hal::EventCode::kCameraLost) Trigger();
+        if (Triggers(event.code)) Trigger();
     }
     /// For what is to be recorded. Any thread.
     [[nodiscard]] RecordIntake& intake() { return intake_; }
@@ -75,6 +76,8 @@ class Recorder {
     [[nodiscard]] RecordingSummary Summarise() const;
 
  private:
+    [[nodiscard]] bool Triggers(hal::EventCode code) const;
+
     Recorder(const RecorderOptions& options, RecordFolder folder, const drivers::RecordedRig& rig,
              std::vector<RecordedCamera> cameras, hal::Clock& clock, EventQueue& events);
 

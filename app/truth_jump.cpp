@@ -11,6 +11,7 @@ namespace {
 
 using algo::ComposedMap;
 using algo::Overlap;
+using algo::PerUnit;
 using algo::Unit;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
@@ -45,6 +46,13 @@ double Median(std::vector<double> values) {
 
 bool Locked(const algo::Composition& composition, Overlap overlap) {
     return composition.seams[overlap] == algo::SeamState::kLocked;
+}
+
+/// Of `change`, what neither staying together nor following the scene explains: its way from the
+/// nearest point between none and `of_scene`.
+Vector2d Unexplained(const Vector2d& change, const Vector2d& of_scene) {
+    const double share = change.dot(of_scene) / std::max(of_scene.squaredNorm(), 1e-9);
+    return change - std::clamp(share, 0.0, 1.0) * of_scene;
 }
 
 }  // namespace
@@ -100,19 +108,36 @@ std::optional<TruthJump::Change> TruthJump::ChangeAt(Overlap overlap, int frame,
     if (trailer.camera < 0) return std::nullopt;
     const auto shown = [&](int at, const Vector3d& p_world_m,
                            const algo::Composition& composition) {
-        return algo::PerUnit<Sighting>{
+        return PerUnit<Sighting>{
             {sight_.Through(Unit::kTractor, camera, at, p_world_m, composition),
              sight_.Through(Unit::kTrailer, trailer.camera, at, p_world_m, composition)}};
     };
     const auto [late_a, late_b] = shown(frame, point->p_world_m, used).of;
-    const auto [early_a, early_b] =
-        shown(frame - 1, OneFrameBefore(frame, point->p_world_m), early_).of;
+    const Vector3d early_m = OneFrameBefore(frame, point->p_world_m);
+    const auto [early_a, early_b] = shown(frame - 1, early_m, early_).of;
     if (late_a.camera < 0 || late_b.camera < 0 || early_a.camera < 0 || early_b.camera < 0)
         return std::nullopt;
     if (!WasOnSeam(overlap, map, early_a.canvas_px)) return std::nullopt;
     const algo::Projection& canvas = sight_.geometry().canvas;
-    return Vector2d(canvas.Difference(late_b.canvas_px, late_a.canvas_px) -
-                    canvas.Difference(early_b.canvas_px, early_a.canvas_px));
+    const PerUnit<int> cameras{{camera, trailer.camera}};
+    return Unexplained(canvas.Difference(late_b.canvas_px, late_a.canvas_px) -
+                           canvas.Difference(early_b.canvas_px, early_a.canvas_px),
+                       Parallax(cameras, frame, point->p_world_m, used) -
+                           Parallax(cameras, frame - 1, early_m, early_));
+}
+
+/// Of a point between two cameras, on a canvas that places the trailer as it truly stands, px.
+Vector2d TruthJump::Parallax(const PerUnit<int>& cameras, int frame, const Vector3d& p_world_m,
+                             const algo::Composition& composition) const {
+    const algo::Projection& canvas = sight_.geometry().canvas;
+    const Matrix3d M_canvas_world = composition.M_canvas_view[Unit::kTractor] *
+                                    rig_.PoseAt(frame, Unit::kTractor).linear().transpose();
+    const auto seen = [&](Unit unit) {
+        const int camera = sight_.RigCamera(unit, cameras[unit]);
+        return canvas.Pixel(M_canvas_world *
+                            (p_world_m - rig_.CameraPoseAt(camera, frame).translation()));
+    };
+    return canvas.Difference(seen(Unit::kTrailer), seen(Unit::kTractor));
 }
 
 /// So near that the detail counted fully there.

@@ -22,6 +22,8 @@ class TruthJump {
     struct Figures {
         /// Of the seam's misalignment: the median, over the scene points that lie on it in both
         /// frames, of how much farther each is shown apart by the units than one frame before; px.
+        /// Where the true parallax of the two cameras changed, too, as of a thing close by that is
+        /// passed, any share of that is no jump.
         double largest_seam_px = 0;
         /// The same of the placement alone, for what is far away; px.
         double largest_placement_px = 0;
@@ -40,6 +42,9 @@ class TruthJump {
     [[nodiscard]] std::optional<Change> ChangeAt(algo::Overlap overlap, int frame,
                                                  const algo::Composition& used,
                                                  const algo::ComposedMap& map, int row);
+    [[nodiscard]] Eigen::Vector2d Parallax(const algo::PerUnit<int>& cameras, int frame,
+                                           const Eigen::Vector3d& p_world_m,
+                                           const algo::Composition& composition) const;
     [[nodiscard]] bool WasOnSeam(algo::Overlap overlap, const algo::ComposedMap& map,
                                  const Eigen::Vector2d& canvas_px) const;
     /// Of what is far away, on the horizon.

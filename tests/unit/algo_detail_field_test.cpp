@@ -29,6 +29,23 @@ class DetailFieldTest : public testing::Test {
     void Fit() {
         for (const Overlap overlap : kOverlaps) field_.Fit(overlap, mesh_);
     }
+    template <typename Samples>
+    void FitAnew(const Samples& show) {
+        for (const Overlap overlap : kOverlaps) field_.Clear(overlap);
+        show();
+        Fit();
+    }
+    void FitAnew() {
+        FitAnew([] {});
+    }
+    void ExpectNothing() const {
+        for (int row = 0; row < field_.detail().rows(); ++row) {
+            for (int col = 0; col < field_.detail().cols(); ++col) {
+                EXPECT_LT(field_.detail().at(row, col).norm(), 0.5F) << row << " " << col;
+                EXPECT_EQ(Doubt(row, col), DetailFieldOptions{}.unknown_px);
+            }
+        }
+    }
     /// With the mesh's part.
     [[nodiscard]] Vector2d At(int row, int col) const {
         return field_.detail().at(row, col).cast<double>() +
@@ -48,6 +65,16 @@ Truth Wall(double from_px, double sign) {
         const bool near = p.x() >= from_px && p.x() < from_px + 128;
         return Vector2d(near ? sign * 48 : 0, near ? -2 : 0);
     };
+}
+
+Truth Flat(double e_px) {
+    return [=](const Vector2d&) { return Vector2d(e_px, 0); };
+}
+
+/// Neighbours differ by 30 px.
+Truth Torn(double e_px) {
+    return
+        [e_px, i = 0](const Vector2d&) mutable { return Vector2d(e_px + 30 * (i++ % 3) - 30, 0); };
 }
 
 TEST_F(DetailFieldTest, FollowsAWideNearThingInEitherOverlap) {
@@ -139,18 +166,67 @@ TEST_F(DetailFieldTest, ASampleThatTellsLittleCountsLess) {
     EXPECT_LT(At(11, 38).norm(), 0.3);
 }
 
-TEST_F(DetailFieldTest, WhenItIsClearedNothingIsLeft) {
+TEST_F(DetailFieldTest, WhatIsLostFadesByAndBy) {
+    Show({160, 0}, {440, 176}, Wall(240, 1));
+    Fit();
+    double last = At(10, 38).x();
+    ASSERT_NEAR(last, 48, 0.5);
+    for (int fit = 0; fit < 60; ++fit) {
+        FitAnew();
+        EXPECT_LE(last - At(10, 38).x(), DetailFieldOptions{}.unsure_step_px + 1e-4) << fit;
+        last = At(10, 38).x();
+    }
+    ExpectNothing();
+}
+
+TEST_F(DetailFieldTest, WhereSamplesAgreeItFollowsThemAtOnce) {
+    Show({160, 0}, {440, 176}, Wall(240, 1));
+    Fit();
+    FitAnew([&] { Show({160, 0}, {440, 176}, Flat(5)); });
+    for (int row = 2; row < 20; ++row) {
+        for (int col = 22; col < 54; ++col)
+            EXPECT_LT((At(row, col) - Vector2d(5, 0)).norm(), 0.5) << row << " " << col;
+    }
+}
+
+TEST_F(DetailFieldTest, WhereSamplesDisagreeNothingLeaps) {
+    Show({160, 0}, {440, 176}, Flat(0));
+    Fit();
+    for (int fit = 1; fit < 5; ++fit) {
+        FitAnew([&] { Show({160, 0}, {440, 176}, Torn(30)); });
+        for (int row = 2; row < 20; ++row) {
+            for (int col = 22; col < 54; ++col) {
+                ASSERT_GT(Doubt(row, col), DetailFieldOptions{}.unsure_px);
+                EXPECT_LE(At(row, col).cwiseAbs().maxCoeff(),
+                          fit * DetailFieldOptions{}.unsure_step_px + 1e-4);
+            }
+        }
+    }
+}
+
+TEST_F(DetailFieldTest, WhatIsInDoubtGoesAlongWithWhatIsSureInItsRow) {
+    const auto show = [&](double e_px) {
+        Show({160, 0}, {280, 176}, Flat(e_px));
+        Show({280, 0}, {340, 176}, Torn(e_px));
+        Show({340, 0}, {440, 176}, Flat(e_px));
+    };
+    show(0);
+    Fit();
+    const double before = At(10, 39).x();
+    FitAnew([&] { show(20); });
+    ASSERT_GT(Doubt(10, 39), DetailFieldOptions{}.unsure_px);
+    EXPECT_NEAR(At(10, 39).x() - before, 20, 2 + DetailFieldOptions{}.unsure_step_px);
+}
+
+TEST_F(DetailFieldTest, AfterAResetNothingIsLeftAndNothingHeld) {
     Show({160, 0}, {440, 176}, Wall(240, 1));
     Fit();
     ASSERT_GT(At(10, 38).norm(), 20);
-    for (const Overlap overlap : kOverlaps) field_.Clear(overlap);
+    field_.Reset();
     Fit();
-    for (int row = 0; row < field_.detail().rows(); ++row) {
-        for (int col = 0; col < field_.detail().cols(); ++col) {
-            EXPECT_EQ(field_.detail().at(row, col), Vector2f::Zero());
-            EXPECT_EQ(Doubt(row, col), DetailFieldOptions{}.unknown_px);
-        }
-    }
+    ExpectNothing();
+    FitAnew([&] { Show({160, 0}, {440, 176}, Wall(240, 1)); });
+    EXPECT_NEAR(At(10, 38).x(), 48, 0.5);
 }
 
 TEST_F(DetailFieldTest, PairsBesideTheCanvasAndTooManyOnOnePlaceAreLeftOut) {

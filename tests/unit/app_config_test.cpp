@@ -444,6 +444,9 @@ TEST_F(ConfigTest, TheFolderOfRecordingsStandsRelativeToTheFile) {
     EXPECT_EQ(record.format, RecordConfig::Format::kRaw);
     EXPECT_EQ(record.every, 3);
     EXPECT_TRUE(Load(kSimulated).value().record.folder.empty());
+    const auto fault = Load(kSimulated + "record: {pre_trigger_s: 9, trigger: camera_fault}\n");
+    ASSERT_TRUE(fault) << fault.error();
+    EXPECT_EQ(fault.value().record.trigger, RecordConfig::Trigger::kCameraFault);
 }
 
 TEST(RigExampleTest, LoadsAndShowsTheDefaults) {

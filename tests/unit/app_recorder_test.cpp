@@ -272,7 +272,8 @@ TEST(RecorderTest, AfterATriggerItEndsAndIsArmedAgain) {
         drive.recorder->Trigger();
         while (drive.recorder->Level().state != hal::RecordingState::kOn) std::this_thread::yield();
         drive.Run(30);
-        while (drive.recorder->Level().state != hal::RecordingState::kArmed) std::this_thread::yield();
+        while (drive.recorder->Level().state != hal::RecordingState::kArmed)
+            std::this_thread::yield();
     }
     drive.recorder->Finish();
     const auto events = drive.Events();
@@ -282,17 +283,30 @@ TEST(RecorderTest, AfterATriggerItEndsAndIsArmedAgain) {
     EXPECT_EQ(tests::Segments(folder.path()).size(), 2U);
 }
 
-TEST(RecorderTest, ALostCameraTriggersWhereItShould) {
-    for (const bool triggers : {false, true}) {
+struct CameraTriggerCase {
+    RecorderOptions::CameraTrigger by;
+    hal::EventCode code;
+    bool triggers;
+};
+
+TEST(RecorderTest, AFaultyCameraTriggersWhereItShould) {
+    using By = RecorderOptions::CameraTrigger;
+    using hal::EventCode;
+    for (const auto& [by, code, triggers] :
+         {CameraTriggerCase{By::kNone, EventCode::kCameraLost, false},
+          CameraTriggerCase{By::kLost, EventCode::kCameraLost, true},
+          CameraTriggerCase{By::kLost, EventCode::kCameraFrozen, false},
+          CameraTriggerCase{By::kFault, EventCode::kCameraLost, true},
+          CameraTriggerCase{By::kFault, EventCode::kCameraDirty, true},
+          CameraTriggerCase{By::kFault, EventCode::kSeamCoast, false}}) {
         const tests::TemporaryFolder folder;
-        Drive drive(folder.path(),
-                    Lossless({.pre_trigger = seconds(9), .camera_lost_triggers = triggers}));
+        Drive drive(folder.path(), Lossless({.pre_trigger = seconds(9), .camera_trigger = by}));
         drive.recorder->Start({});
         drive.Run(5);
         drive.recorder->Note({.code = hal::EventCode::kCameraBack});
         std::this_thread::sleep_for(milliseconds(120));
         EXPECT_EQ(drive.recorder->Level().state, hal::RecordingState::kArmed);
-        drive.recorder->Note({.code = hal::EventCode::kCameraLost});
+        drive.recorder->Note({.code = code});
         while (triggers && drive.recorder->Level().state != hal::RecordingState::kOn)
             std::this_thread::yield();
         drive.recorder->Finish();
