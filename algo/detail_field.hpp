@@ -20,10 +20,10 @@ struct DetailFieldOptions {
     int sweeps = 6;             ///< of the membrane
     double most_doubt_px = 20;  ///< of a single sample
     double unknown_px = 8;      ///< doubt where there is no sample
-    double sure_px = 2.5;       ///< up to this doubt a corner is as its samples say
-    double unsure_px = 6;       ///< from this doubt on it hardly leaves what it was before
-    double least_gain = 0.25;   ///< share of the way that it then goes, per frame,
-    double unsure_step_px = 2;  ///< but at most so far
+    double sure_px = 2;         ///< up to this doubt a corner is as its samples say
+    double unsure_px = 5;       ///< from this doubt on it hardly leaves what it was before
+    double least_gain = 0.35;   ///< share of the way that it then goes, per frame,
+    double unsure_step_px = 3;  ///< but at most so far
     ScanlineFitOptions scanlines{};
 };
 

@@ -47,8 +47,10 @@ hal::EventText TextOf(CameraState before, CameraState state, hal::Instant lasted
     hal::EventText text(WordsFor(state).text);
     if (state != CameraState::kGood) return text;
     const auto lasted_ms = std::chrono::duration_cast<std::chrono::milliseconds>(lasted);
-    return text.Append(" after ").AppendNumber(lasted_ms.count()).Append(" ms: was ").Append(
-        hal::ToString(before));
+    return text.Append(" after ")
+        .AppendNumber(lasted_ms.count())
+        .Append(" ms: was ")
+        .Append(hal::ToString(before));
 }
 
 constexpr bool Has(std::uint32_t mask, std::size_t camera) {
@@ -71,12 +73,13 @@ void CameraWatch::Look(FrameSet& set) {
     for (std::size_t i = 0; i < cameras_.size(); ++i) signs[i] = Look(i, set, moment);
     pictures_.Finish(signs);
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
-        const bool has_picture = static_cast<bool>(LeaseOf(set, i)) && !signs[i][CameraState::kLate];
+        const bool has_picture =
+            static_cast<bool>(LeaseOf(set, i)) && !signs[i][CameraState::kLate];
         cameras_[i].judge.Note(signs[i], has_picture);
         if (pictures_.SeemsRepeated(i)) set.cameras_repeated |= 1U << i;
         Decide(i, set, !has_picture);
     }
-    SetMoments(set);
+    set.FindMoments();
 }
 
 /// The middle one of the stamps: a camera whose clock is wrong makes no other one look late.
@@ -103,7 +106,8 @@ CameraSigns CameraWatch::Look(std::size_t index, const FrameSet& set, hal::Insta
             signs[CameraState::kStuck] = header.sequence == camera.newest->sequence;
         }
         camera.newest = header;
-        const hal::Instant apart = std::max(moment - header.captured_at, header.captured_at - moment);
+        const hal::Instant apart =
+            std::max(moment - header.captured_at, header.captured_at - moment);
         signs[CameraState::kLate] = apart > 3 * period_ / 2;
         pictures_.Add(index, Borrow(lease));
     } else {
@@ -138,9 +142,9 @@ void CameraWatch::Tell(Camera& camera, CameraState state, bool device_told) {
         if (!camera.lost_at) camera.lost_at = now;
         if (!camera.device_told && now - *camera.lost_at < patience_) return;
     }
-    const bool known = camera.device_told && (state == CameraState::kLost ||
-                                              (state == CameraState::kGood &&
-                                               camera.told == CameraState::kLost));
+    const bool known =
+        camera.device_told && (state == CameraState::kLost ||
+                               (state == CameraState::kGood && camera.told == CameraState::kLost));
     if (!known) {
         const hal::EventText text = TextOf(camera.told, state, now - camera.told_at);
         if (!events_.is_on_stderr())
@@ -153,18 +157,6 @@ void CameraWatch::Tell(Camera& camera, CameraState state, bool device_told) {
     if (camera.told == CameraState::kGood) camera.told_at = now;
     if (state == CameraState::kGood) camera.device_told = false;
     camera.told = state;
-}
-
-void CameraWatch::SetMoments(FrameSet& set) const {
-    bool first = true;
-    for (std::size_t i = 0; i < cameras_.size(); ++i) {
-        const hal::FrameLease& lease = LeaseOf(set, i);
-        if (!lease) continue;
-        const hal::Instant at = lease.view().header.captured_at;
-        set.captured_from = first ? at : std::min(set.captured_from, at);
-        set.captured_until = first ? at : std::max(set.captured_until, at);
-        first = false;
-    }
 }
 
 void CameraWatch::Reset() {

@@ -30,7 +30,8 @@ class CameraWatch {
     static constexpr hal::Instant kLivePatience = std::chrono::milliseconds(1500);
 
     /// `cameras` in the order of the bits of FrameSet::cameras_missing; `events` and `clock` must
-    /// outlive it. `patience`: before it is told that a camera is lost, beside what its state takes.
+    /// outlive it. `patience`: before it is told that a camera is lost, beside what its state
+    /// takes.
     CameraWatch(std::vector<WatchedPicture> cameras, hal::Instant period, EventQueue& events,
                 const hal::Clock& clock, hal::Instant patience = {});
 
@@ -62,7 +63,6 @@ class CameraWatch {
     CameraSigns Look(std::size_t index, const FrameSet& set, hal::Instant moment);
     void Decide(std::size_t index, FrameSet& set, bool too_old);
     void Tell(Camera& camera, hal::CameraState state, bool device_told);
-    void SetMoments(FrameSet& set) const;
     [[nodiscard]] hal::FrameLease& LeaseOf(FrameSet& set, std::size_t index) const;
     [[nodiscard]] const hal::FrameLease& LeaseOf(const FrameSet& set, std::size_t index) const;
 

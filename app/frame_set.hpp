@@ -23,6 +23,9 @@ struct FrameSet {
     std::uint32_t cameras_disordered = 0;  ///< gave frames with stamps that went back, not taken
     std::array<hal::CameraState, algo::kMaxCameras> camera_states{};  ///< see CameraWatch
     std::uint32_t cameras_repeated = 0;  ///< gave a picture that seems to be the one before
+
+    /// Sets captured_from and captured_until by the frames it has; without any they stay.
+    void FindMoments();
 };
 
 }  // namespace hitchview::app

@@ -59,19 +59,14 @@ hal::Result<FrameSet> LiveFrameSynchronizer::DoWaitSet() {
 
 FrameSet LiveFrameSynchronizer::TakeSet(FrameInbox::Visit& visit, const CameraMask& taken) {
     FrameSet set;
-    bool first = true;
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
         if (!taken[i]) {
             set.cameras_missing |= 1U << i;
             continue;
         }
-        hal::FrameLease frame = visit.Take(i);
-        const hal::Instant at = frame.view().header.captured_at;
-        set.captured_from = first ? at : std::min(set.captured_from, at);
-        set.captured_until = first ? at : std::max(set.captured_until, at);
-        first = false;
-        set.leases[cameras_[i].unit][cameras_[i].index_in_unit] = std::move(frame);
+        set.leases[cameras_[i].unit][cameras_[i].index_in_unit] = visit.Take(i);
     }
+    set.FindMoments();
     NoteMissing(visit, set);
     Number(set, set.captured_until);
     ++(set.cameras_missing == 0 ? counts_.complete : counts_.partial);

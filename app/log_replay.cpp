@@ -184,7 +184,6 @@ hal::Result<FrameSet> LogReplay::DoWaitSet() {
     if (!wanted) return failed_ ? hal::Error::kFailed : hal::Error::kEndOfStream;
     FrameSet set;
     set.sequence = wanted->sequence;
-    bool first = true;
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
         const LogCamera& camera = cameras_[i];
         auto frame = wanted->frames[i] ? WaitFrame(camera) : hal::Error::kCorrupted;
@@ -193,12 +192,9 @@ hal::Result<FrameSet> LogReplay::DoWaitSet() {
             set.cameras_missing |= 1U << i;
             continue;
         }
-        const hal::Instant at = frame->view().header.captured_at;
-        set.captured_from = first ? at : std::min(set.captured_from, at);
-        set.captured_until = first ? at : std::max(set.captured_until, at);
-        first = false;
         set.leases[camera.unit][camera.index_in_unit] = std::move(*frame);
     }
+    set.FindMoments();
     return set;
 }
 

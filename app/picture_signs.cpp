@@ -18,8 +18,9 @@ constexpr float kWhiteShare = 0.6F;
 /// Parts of a picture that are looked at for its sharpness: under a smear even the sharpest are
 /// blurred, behind the plain side of a lorry some are not.
 constexpr std::size_t kSharpestCells = 8;
-/// Share of what is expected below which detail counts as lost.
-constexpr float kLostDetail = 0.1F;
+/// Shares of what is expected below which the detail of a picture, and of a part, counts as lost.
+constexpr float kLostSharpness = 0.1F;
+constexpr float kLostDetail = 0.12F;
 /// Detail (grey levels squared) of parts and pictures that have any.
 constexpr float kSomeDetail = 60;
 /// Of the parts that can be judged.
@@ -137,7 +138,7 @@ void PictureSigns::FindBlurred(std::array<CameraSigns, kMaxCameras>& signs) {
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
         if (!cameras_[i].compared) continue;
         signs[i][CameraState::kBlurred] =
-            usual >= kSomeDetail && cameras_[i].sharpness < kLostDetail * usual;
+            usual >= kSomeDetail && cameras_[i].sharpness < kLostSharpness * usual;
         cameras_[i].compared = !signs[i][CameraState::kBlurred];
     }
 }

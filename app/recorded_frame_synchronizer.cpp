@@ -24,7 +24,6 @@ hal::Result<FrameSet> RecordedFrameSynchronizer::DoWaitSet() {
     FrameSet set;
     set.sequence = next_sequence_++;
     int index = 0;
-    bool first = true;
     for (const algo::Unit unit : algo::kUnits) {
         for (std::size_t i = 0; i < cameras_[unit].size(); ++i, ++index) {
             auto frame = WaitFrame(*cameras_[unit][i]);
@@ -33,13 +32,10 @@ hal::Result<FrameSet> RecordedFrameSynchronizer::DoWaitSet() {
                 set.cameras_missing |= 1U << index;
                 continue;
             }
-            const hal::Instant at = frame->view().header.captured_at;
-            set.captured_from = first ? at : std::min(set.captured_from, at);
-            set.captured_until = first ? at : std::max(set.captured_until, at);
-            first = false;
             set.leases[unit][i] = std::move(*frame);
         }
     }
+    set.FindMoments();
     return set;
 }
 

@@ -18,9 +18,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// Rows of corners from one that is looked at to the next.
-constexpr int kRowStep = 2;
+constexpr int kRowStep = 1;
 /// With fewer points a median tells of single things.
-constexpr std::size_t kFewestPoints = 5;
+constexpr std::size_t kFewestPoints = 10;
 /// What a truck's box may exceed its nominal size by.
 constexpr double kSlack_m = 0.3;
 constexpr double kHalfTruckWidth_m = 1.3;
