@@ -90,6 +90,14 @@ std::string YamlComplaints::Text() const {
     return text;
 }
 
+bool YamlValue::is_map() const {
+    return node_ && node_->IsMap();
+}
+
+bool YamlValue::is_list() const {
+    return node_ && node_->IsSequence();
+}
+
 void YamlValue::Refuse(const std::string& must_be) const {
     if (place_.complaints == nullptr || !node_) return;
     place_.complaints->Add(place_.line,

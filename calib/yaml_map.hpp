@@ -70,8 +70,8 @@ class YamlValue {
     YamlValue(const YamlValue&) = default;
 
     [[nodiscard]] bool given() const { return node_.has_value(); }
-    [[nodiscard]] bool is_map() const { return node_ && node_->IsMap(); }
-    [[nodiscard]] bool is_list() const { return node_ && node_->IsSequence(); }
+    [[nodiscard]] bool is_map() const;
+    [[nodiscard]] bool is_list() const;
 
     /// Whole numbers are decimal, or hexadecimal after 0x.
     template <std::integral T>
