@@ -18,7 +18,6 @@ using Eigen::Vector2f;
 constexpr int kHalf = 3;
 constexpr int kSide = 2 * kHalf + 1;
 constexpr int kArea = kSide * kSide;
-constexpr int kLanes = 8;  // of a row: one more than a patch has, which is 0
 constexpr int kSteps = 2;
 constexpr float kFarthest_px = 2;
 constexpr float kNear_px = 0.05F;  // a step no longer than this is the last

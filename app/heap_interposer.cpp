@@ -5,7 +5,7 @@
 
 // Stands in for glibc's malloc and its kin in an executable that has this file among its sources,
 // so that the calls of every library are seen, operator new's among them. free is glibc's own.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef HITCHVIEW_SANITIZED
 
 using hitchview::app::NoteHeapCall;
 

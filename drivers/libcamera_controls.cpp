@@ -176,8 +176,9 @@ Checked<Done> Plan(const ControlInfoMap& controls, const LibcameraControlWish& w
         return is + (any_count    ? "numbers"
                      : count == 1 ? "a number"
                                   : std::to_string(count) + " numbers");
-    const bool allowed = std::ranges::all_of(
-        *numbers, [&, &range = info](double n) { return IsAllowed(id->type(), range, n); });
+    const bool allowed = std::ranges::all_of(*numbers, [&key = id, &range = info](double n) {
+        return IsAllowed(key->type(), range, n);
+    });
     if (!allowed) return is + AllowedText(info);
     const auto value = ValueOf(id->type(), *numbers, array > 0);
     if (!value) return "control " + id->name() + " is of a kind that cannot be set from here";

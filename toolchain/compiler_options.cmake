@@ -26,4 +26,5 @@ target_compile_options(hitchview_options INTERFACE
 if(HITCHVIEW_SANITIZE)
     target_compile_options(hitchview_options INTERFACE -fsanitize=${HITCHVIEW_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(hitchview_options INTERFACE -fsanitize=${HITCHVIEW_SANITIZE})
+    target_compile_definitions(hitchview_options INTERFACE HITCHVIEW_SANITIZED)
 endif()

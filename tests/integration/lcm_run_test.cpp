@@ -30,7 +30,7 @@ using tests::TemporaryFolder;
 
 constexpr int kFrames = 90;
 /// Frame sets that a busy machine may skip; with a sanitizer the count is not judged.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef HITCHVIEW_SANITIZED
 constexpr int kMostDropped = kFrames;
 #else
 constexpr int kMostDropped = kFrames / 3;

@@ -18,7 +18,7 @@ std::uint64_t HeapCallsOfThisThread() {
 
 }  // namespace hitchview::tests
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef HITCHVIEW_SANITIZED
 
 // glibc's own names of what is replaced below. operator new calls malloc.
 extern "C" {

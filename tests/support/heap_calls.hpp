@@ -5,7 +5,7 @@
 namespace hitchview::tests {
 
 /// False in builds with a sanitizer, which brings its own malloc.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef HITCHVIEW_SANITIZED
 inline constexpr bool kHeapCallsAreCounted = false;
 #else
 inline constexpr bool kHeapCallsAreCounted = true;
