@@ -19,6 +19,13 @@ namespace {
 using hal::Checked;
 using hal::Done;
 
+#ifdef HITCHVIEW_SANITIZED
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+constexpr const char* kTooMuch = "a sanitizer's tables are larger than memory";
+
 constexpr std::size_t kStackBytes = 2 << 20;
 /// Of the stack of the process's first thread, which grows as it is used.
 constexpr std::size_t kFirstStackBytes = 512 << 10;
@@ -69,6 +76,7 @@ Checked<Done> BoundStacks() {
 }
 
 Checked<Done> LockAllMemory() {
+    if (kSanitized) return std::string(kTooMuch);
     if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return Done{};
     return std::string(std::strerror(errno)) +
            ": give the service LimitMEMLOCK=infinity or the capability CAP_IPC_LOCK";
@@ -76,6 +84,7 @@ Checked<Done> LockAllMemory() {
 
 Checked<Done> PrefaultMemory() {
     TouchStack();
+    if (kSanitized) return std::string(kTooMuch);
     std::ifstream maps("/proc/self/maps");
     if (!maps) return std::string("/proc/self/maps cannot be read");
     int refused = 0;
