@@ -57,18 +57,6 @@ drivers::RecordedRig RigOf(const RigConfig& config, const RunSummary& run,
     return rig;
 }
 
-RecorderOptions::CameraTrigger CameraTriggerOf(RecordConfig::Trigger trigger) {
-    switch (trigger) {
-        case RecordConfig::Trigger::kSignal:
-            break;
-        case RecordConfig::Trigger::kCameraLost:
-            return RecorderOptions::CameraTrigger::kLost;
-        case RecordConfig::Trigger::kCameraFault:
-            return RecorderOptions::CameraTrigger::kFault;
-    }
-    return RecorderOptions::CameraTrigger::kNone;
-}
-
 RecorderOptions OptionsOf(const RigConfig& config, const RunOptions& options) {
     const RecordConfig& record = config.record;
     RecorderOptions recorder{
@@ -78,7 +66,7 @@ RecorderOptions OptionsOf(const RigConfig& config, const RunOptions& options) {
         .segment = std::chrono::seconds(record.segment_s),
         .pre_trigger = std::chrono::seconds(record.pre_trigger_s),
         .after_trigger = std::chrono::seconds(record.after_trigger_s),
-        .camera_trigger = CameraTriggerOf(record.trigger),
+        .trigger_by = record.trigger,
         .intake = {.memory_bytes = static_cast<std::size_t>(record.memory_mb) << 20,
                    .lossless = !options.realtime,
                    .live = config.IsLive()},

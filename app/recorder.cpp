@@ -69,13 +69,13 @@ Recorder::~Recorder() {
 }
 
 bool Recorder::Triggers(hal::EventCode code) const {
-    using By = RecorderOptions::CameraTrigger;
-    switch (options_.camera_trigger) {
-        case By::kNone:
+    using By = RecordConfig::Trigger;
+    switch (options_.trigger_by) {
+        case By::kSignal:
             return false;
-        case By::kLost:
+        case By::kCameraLost:
             return code == hal::EventCode::kCameraLost;
-        case By::kFault:
+        case By::kCameraFault:
             return code >= hal::EventCode::kCameraLost && code <= hal::EventCode::kCameraDirty &&
                    code != hal::EventCode::kCameraBack;
     }

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/config.hpp"
 #include "app/frame_recorder.hpp"
 #include "app/record_intake.hpp"
 #include "app/record_writer.hpp"
@@ -31,7 +32,7 @@ struct RecorderOptions {
     std::chrono::seconds pre_trigger{0};
     std::chrono::seconds after_trigger{
         0};  ///< ends so long after the newest trigger; 0: never; with pre_trigger only
-    enum class CameraTrigger { kNone, kLost, kFault } camera_trigger = CameraTrigger::kNone;
+    RecordConfig::Trigger trigger_by = RecordConfig::Trigger::kSignal;
     RecordIntakeOptions intake{};
     FrameRecorderOptions frames{};
     std::atomic<bool>* trigger = nullptr;  ///< set from outside, reset here; null: nobody does

@@ -17,8 +17,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Rows of corners from one that is looked at to the next.
-constexpr int kRowStep = 1;
 /// With fewer points a median tells of single things.
 constexpr std::size_t kFewestPoints = 10;
 /// What a truck's box may exceed its nominal size by.
@@ -81,7 +79,7 @@ void TruthJump::ObserveSeam(Overlap overlap, int frame, const algo::Composition&
         std::max(figures.largest_placement_px, (error_px - early_px).norm());
     std::vector<double> x;
     std::vector<double> y;
-    for (int row = 0; row <= map.block_rows(); row += kRowStep) {
+    for (int row = 0; row <= map.block_rows(); ++row) {
         const auto change = ChangeAt(overlap, frame, used, map, row);
         if (!change) continue;
         x.push_back(change->x());

@@ -284,23 +284,23 @@ TEST(RecorderTest, AfterATriggerItEndsAndIsArmedAgain) {
 }
 
 struct CameraTriggerCase {
-    RecorderOptions::CameraTrigger by;
+    RecordConfig::Trigger by;
     hal::EventCode code;
     bool triggers;
 };
 
 TEST(RecorderTest, AFaultyCameraTriggersWhereItShould) {
-    using By = RecorderOptions::CameraTrigger;
+    using By = RecordConfig::Trigger;
     using hal::EventCode;
     for (const auto& [by, code, triggers] :
-         {CameraTriggerCase{By::kNone, EventCode::kCameraLost, false},
-          CameraTriggerCase{By::kLost, EventCode::kCameraLost, true},
-          CameraTriggerCase{By::kLost, EventCode::kCameraFrozen, false},
-          CameraTriggerCase{By::kFault, EventCode::kCameraLost, true},
-          CameraTriggerCase{By::kFault, EventCode::kCameraDirty, true},
-          CameraTriggerCase{By::kFault, EventCode::kSeamCoast, false}}) {
+         {CameraTriggerCase{By::kSignal, EventCode::kCameraLost, false},
+          CameraTriggerCase{By::kCameraLost, EventCode::kCameraLost, true},
+          CameraTriggerCase{By::kCameraLost, EventCode::kCameraFrozen, false},
+          CameraTriggerCase{By::kCameraFault, EventCode::kCameraLost, true},
+          CameraTriggerCase{By::kCameraFault, EventCode::kCameraDirty, true},
+          CameraTriggerCase{By::kCameraFault, EventCode::kSeamCoast, false}}) {
         const tests::TemporaryFolder folder;
-        Drive drive(folder.path(), Lossless({.pre_trigger = seconds(9), .camera_trigger = by}));
+        Drive drive(folder.path(), Lossless({.pre_trigger = seconds(9), .trigger_by = by}));
         drive.recorder->Start({});
         drive.Run(5);
         drive.recorder->Note({.code = hal::EventCode::kCameraBack});
