@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -88,7 +89,8 @@ TEST_F(CamerasVerbTest, FindsTheCamerasOfARigByNameAndPicksWhatItAsksFor) {
     std::filesystem::remove(name);
     EXPECT_EQ(Json().at("rig")[1].at("device"), "/dev/video5");
     const json device = Json().at("devices")[5];
-    EXPECT_EQ(device.at("names"), std::vector<std::string>{name});
+    // udev may have given this one its own name of all eight, which are at one place to it.
+    EXPECT_THAT(device.at("names").get<std::vector<std::string>>(), testing::Contains(name));
     EXPECT_EQ(device.at("pick").at("format"), "yuyv");
     EXPECT_EQ(device.at("pick").at("size_px"), (std::vector<int>{640, 360}));
     EXPECT_EQ(Json().at("devices")[4].at("pick").at("format"), "nv12");
