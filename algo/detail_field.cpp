@@ -108,9 +108,9 @@ DetailField::DetailField(const Projection& canvas, const DetailFieldOptions& opt
       misses_(canvas, Vector2f::Zero()),
       detail_(canvas, Vector2f::Zero()),
       doubt_px_(canvas, static_cast<float>(options.unknown_px)),
-      fitted_before_(canvas, Vector2f::Zero()) {}
+      past_(canvas, options.past) {}
 
-DetailField::Range DetailField::HalfOf(Overlap overlap) const {
+CornerColumns DetailField::HalfOf(Overlap overlap) const {
     const int half = detail_.cols() / 2;
     const int first = overlap == Overlap::kLeft ? 0 : half;
     return {first, first + half - 1};
@@ -119,13 +119,13 @@ DetailField::Range DetailField::HalfOf(Overlap overlap) const {
 void DetailField::Reset() {
     for (const Overlap overlap : kOverlaps) {
         Clear(overlap);
-        fitted_before_range_[overlap] = {};
+        past_.Forget(overlap);
     }
 }
 
 void DetailField::Clear(Overlap overlap) {
     samples_[overlap].Clear();
-    const Range half = HalfOf(overlap);
+    const CornerColumns half = HalfOf(overlap);
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = half.first; col <= half.last; ++col) {
             detail_.at(row, col).setZero();
@@ -141,24 +141,23 @@ void DetailField::Add(Overlap overlap, const CanvasPair& pair, float weight) {
     const double v = (met.y() + 0.5) / spacing_px_ + 0.5;
     const auto col = static_cast<int>(u);
     const auto row = static_cast<int>(v);
-    const Range half = HalfOf(overlap);
+    const CornerColumns half = HalfOf(overlap);
     if (v < 0 || row >= detail_.rows() || col < half.first || col > half.last) return;
     samples_[overlap].Add(row, col, {Vector2d(x, met.y()).cast<float>(), e.cast<float>(), weight});
 }
 
 void DetailField::Fit(Overlap overlap, const VertexField& discrepancy) {
     samples_[overlap].Sort();
-    Range range = FindRange(overlap);
-    if (range.last <= range.first) range = Range{};
-    const Range before = fitted_before_range_[overlap];
-    const Range both = Together(range, before);
+    CornerColumns range = FindRange(overlap);
+    if (range.last <= range.first) range = {};
+    const CornerColumns both = CornerColumns::Together(range, past_.columns(overlap));
     LookUpMesh(discrepancy, both);
     if (!range.empty()) FitSamples(overlap, range);
-    KeepInDoubt(before);
-    Remember(overlap, both);
+    past_.Hold(overlap, smooth_, doubt_px_, detail_);
+    past_.Remember(overlap, both, smooth_, detail_);
 }
 
-void DetailField::FitSamples(Overlap overlap, const Range& range) {
+void DetailField::FitSamples(Overlap overlap, const CornerColumns& range) {
     const CornerSamples& samples = samples_[overlap];
     // What is near lies farther forward in the trailer's view: to the right, in the left overlap.
     const float sign = overlap == Overlap::kLeft ? 1.0F : -1.0F;
@@ -178,16 +177,10 @@ void DetailField::FitSamples(Overlap overlap, const Range& range) {
     Doubt(samples, range);
 }
 
-DetailField::Range DetailField::Together(const Range& a, const Range& b) {
-    if (a.empty()) return b;
-    if (b.empty()) return a;
-    return {std::min(a.first, b.first), std::max(a.last, b.last)};
-}
-
 /// The columns that have samples.
-DetailField::Range DetailField::FindRange(Overlap overlap) const {
-    const Range half = HalfOf(overlap);
-    Range range{detail_.cols(), -1};
+CornerColumns DetailField::FindRange(Overlap overlap) const {
+    const CornerColumns half = HalfOf(overlap);
+    CornerColumns range{detail_.cols(), -1};
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = half.first; col <= half.last; ++col) {
             const CornerSamples::Run run = samples_[overlap].Of(row, col, col);
@@ -200,7 +193,7 @@ DetailField::Range DetailField::FindRange(Overlap overlap) const {
 }
 
 /// Each sample for the four corners round it.
-void DetailField::Vote(const CornerSamples& samples, const Range& range, float sign,
+void DetailField::Vote(const CornerSamples& samples, const CornerColumns& range, float sign,
                        ScanlineFit& fit) const {
     const auto vote = [&](int row, int col, const ScanlineFit::Ballot& ballot, float weight) {
         if (row < 0 || row >= detail_.rows() || col < range.first || col > range.last) return;
@@ -227,7 +220,7 @@ void DetailField::Vote(const CornerSamples& samples, const Range& range, float s
 }
 
 /// Leaves out what is too far from the corner to count.
-void DetailField::Gather(const CornerSamples& samples, int row, int col, const Range& range,
+void DetailField::Gather(const CornerSamples& samples, int row, int col, const CornerColumns& range,
                          Neighbours& around) const {
     const Nearness nearness(detail_.Pixel(row, col), options_.reach_px);
     constexpr int kBlock = CornerSamples::kBlock;
@@ -266,7 +259,7 @@ void DetailField::Settle(const Neighbours& around, int row, int col, float start
     support_.at(row, col) = std::max(support, kLeastSupport);
 }
 
-void DetailField::LookUpMesh(const VertexField& discrepancy, const Range& range) {
+void DetailField::LookUpMesh(const VertexField& discrepancy, const CornerColumns& range) {
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
             smooth_.at(row, col) =
@@ -275,7 +268,7 @@ void DetailField::LookUpMesh(const VertexField& discrepancy, const Range& range)
     }
 }
 
-void DetailField::Subtract(const Range& range) {
+void DetailField::Subtract(const CornerColumns& range) {
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col) {
             wanted_.at(row, col) -= smooth_.at(row, col);
@@ -285,7 +278,7 @@ void DetailField::Subtract(const Range& range) {
 }
 
 /// Minimises sum support |u - wanted|^2 + smoothness |grad u|^2 (Gauss-Seidel).
-void DetailField::Smooth(const Range& range) {
+void DetailField::Smooth(const CornerColumns& range) {
     const auto smoothness = static_cast<float>(options_.smoothness);
     for (int row = 1; row + 1 < detail_.rows(); ++row) {
         for (int col = range.first + 1; col < range.last; ++col) {
@@ -298,7 +291,7 @@ void DetailField::Smooth(const Range& range) {
     for (int sweep = 0; sweep < options_.sweeps; ++sweep) Sweep(range);
 }
 
-void DetailField::Sweep(const Range& range) {
+void DetailField::Sweep(const CornerColumns& range) {
     for (int row = 1; row + 1 < detail_.rows(); ++row) {
         for (int col = range.first + 1; col < range.last; ++col) {
             const float share = neighbours_share_.at(row, col);
@@ -310,70 +303,7 @@ void DetailField::Sweep(const Range& range) {
     }
 }
 
-/// What the samples do not bear out leaves what it was before by and by, moved as what is sure in
-/// its row: so it goes along when the units shake. `range`: where something was fitted before.
-void DetailField::KeepInDoubt(const Range& range) {
-    for (int row = 0; row < detail_.rows(); ++row) {
-        const Vector2f moved = SureChange(row, range);
-        for (int col = range.first; col <= range.last; ++col) {
-            const Vector2f before = fitted_before_.at(row, col) + moved - smooth_.at(row, col);
-            detail_.at(row, col) =
-                before + Step(detail_.at(row, col) - before, SurenessAt(row, col));
-        }
-    }
-}
-
-/// What a corner takes of a change, per axis.
-Vector2f DetailField::Step(const Vector2f& change_px, float sureness) const {
-    if (sureness >= 1) return change_px;
-    const auto least = static_cast<float>(options_.least_gain);
-    const Vector2f most =
-        Vector2f::Constant(static_cast<float>(options_.unsure_step_px) / (1 - sureness));
-    const float gain = least + (1 - least) * sureness;
-    return (gain * change_px).cwiseMax(-most).cwiseMin(most);
-}
-
-/// How much the whole discrepancy of a row changed, the mean over its corners by their sureness.
-Vector2f DetailField::SureChange(int row, const Range& range) const {
-    constexpr float kStill = 1;  // sure corner that did not change is added
-    Vector2f sum = Vector2f::Zero();
-    float weight = kStill;
-    for (int col = range.first; col <= range.last; ++col) {
-        const float sureness = SurenessAt(row, col);
-        sum +=
-            sureness * (detail_.at(row, col) + smooth_.at(row, col) - fitted_before_.at(row, col));
-        weight += sureness;
-    }
-    return sum / weight;
-}
-
-/// 1 where the samples agree, 0 where they do not, or are none.
-float DetailField::SurenessAt(int row, int col) const {
-    const double share =
-        (options_.unsure_px - doubt_px_.at(row, col)) / (options_.unsure_px - options_.sure_px);
-    return static_cast<float>(std::clamp(share, 0.0, 1.0));
-}
-
-bool DetailField::HasDetail(int col) const {
-    constexpr float kLeast_px = 0.25F;
-    for (int row = 0; row < detail_.rows(); ++row)
-        if (detail_.at(row, col).cwiseAbs().maxCoeff() > kLeast_px) return true;
-    return false;
-}
-
-/// Columns at the rims that have no detail any more are forgotten.
-void DetailField::Remember(Overlap overlap, const Range& range) {
-    Range kept = range;
-    while (!kept.empty() && !HasDetail(kept.first)) ++kept.first;
-    while (!kept.empty() && !HasDetail(kept.last)) --kept.last;
-    for (int row = 0; row < detail_.rows(); ++row) {
-        for (int col = kept.first; col <= kept.last; ++col)
-            fitted_before_.at(row, col) = detail_.at(row, col) + smooth_.at(row, col);
-    }
-    fitted_before_range_[overlap] = kept.empty() ? Range{} : kept;
-}
-
-void DetailField::Doubt(const CornerSamples& samples, const Range& range) {
+void DetailField::Doubt(const CornerSamples& samples, const CornerColumns& range) {
     for (int row = 0; row < detail_.rows(); ++row) {
         for (int col = range.first; col <= range.last; ++col)
             misses_.at(row, col) = MissesAt(samples, row, col);

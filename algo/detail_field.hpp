@@ -5,6 +5,7 @@
 
 #include "algo/corner_grid.hpp"
 #include "algo/corner_samples.hpp"
+#include "algo/detail_past.hpp"
 #include "algo/mesh.hpp"
 #include "algo/scanline_fit.hpp"
 #include "algo/stitching_motion_field.hpp"
@@ -20,21 +21,17 @@ struct DetailFieldOptions {
     int sweeps = 6;             ///< of the membrane
     double most_doubt_px = 20;  ///< of a single sample
     double unknown_px = 8;      ///< doubt where there is no sample
-    double sure_px = 2;         ///< up to this doubt a corner is as its samples say
-    double unsure_px = 5;       ///< from this doubt on it hardly leaves what it was before
-    double least_gain = 0.35;   ///< share of the way that it then goes, per frame,
-    double unsure_step_px = 3;  ///< but at most so far
     ScanlineFitOptions scanlines{};
+    DetailPastOptions past{};
 };
 
 /// What the mesh of the stitching field is too coarse for: things with edges in depth. The rest of
 /// the discrepancy, fitted to a dense set of pairs at the corners of the composed map. Where near
 /// and far things meet on one place, the field follows what it can follow without a fold
-/// (ScanlineFit); FadeFromSeams then bounds what is left of its slopes. Where the samples disagree,
-/// as at night, or are gone, a corner leaves what it was in the fit before by small steps, so that
-/// noise does not make a seam leap; where they agree it is as they say at once. Ring only: an
-/// overlap in each half of the canvas. Memory is taken at construction; the two overlaps may be
-/// handled at once on two threads, each call for one.
+/// (ScanlineFit); FadeFromSeams then bounds what is left of its slopes. What is in doubt is held to
+/// what it was in the fit before (DetailPast). Ring only: an overlap in each half of the canvas.
+/// Memory is taken at construction; the two overlaps may be handled at once on two threads, each
+/// call for one.
 class DetailField {
  public:
     DetailField(const Projection& canvas, const DetailFieldOptions& options);
@@ -66,34 +63,21 @@ class DetailField {
     };
 
  private:
-    /// Columns of corners, both ends included.
-    struct Range {
-        int first = 0;
-        int last = -1;
-
-        [[nodiscard]] bool empty() const { return last < first; }
-    };
-
-    [[nodiscard]] Range HalfOf(Overlap overlap) const;
-    static Range Together(const Range& a, const Range& b);
-    [[nodiscard]] Range FindRange(Overlap overlap) const;
-    void FitSamples(Overlap overlap, const Range& range);
-    void LookUpMesh(const VertexField& discrepancy, const Range& range);
-    void Vote(const CornerSamples& samples, const Range& range, float sign, ScanlineFit& fit) const;
+    [[nodiscard]] CornerColumns HalfOf(Overlap overlap) const;
+    [[nodiscard]] CornerColumns FindRange(Overlap overlap) const;
+    void FitSamples(Overlap overlap, const CornerColumns& range);
+    void LookUpMesh(const VertexField& discrepancy, const CornerColumns& range);
+    void Vote(const CornerSamples& samples, const CornerColumns& range, float sign,
+              ScanlineFit& fit) const;
     void Settle(const Neighbours& around, int row, int col, float start_px);
-    void Subtract(const Range& range);
-    void Smooth(const Range& range);
-    void KeepInDoubt(const Range& range);
-    [[nodiscard]] Eigen::Vector2f Step(const Eigen::Vector2f& change_px, float sureness) const;
-    [[nodiscard]] Eigen::Vector2f SureChange(int row, const Range& range) const;
-    [[nodiscard]] float SurenessAt(int row, int col) const;
-    [[nodiscard]] bool HasDetail(int col) const;
-    void Remember(Overlap overlap, const Range& range);
-    void Sweep(const Range& range);
-    void Doubt(const CornerSamples& samples, const Range& range);
+    void Subtract(const CornerColumns& range);
+    void Smooth(const CornerColumns& range);
+    void Sweep(const CornerColumns& range);
+    void Doubt(const CornerSamples& samples, const CornerColumns& range);
     [[nodiscard]] Eigen::Vector2f MissesAt(const CornerSamples& samples, int row, int col) const;
-    void Gather(const CornerSamples& samples, int row, int col, const Range& range,
+    void Gather(const CornerSamples& samples, int row, int col, const CornerColumns& range,
                 Neighbours& around) const;
+
     Projection canvas_;
     Mesh mesh_;
     float spacing_px_;  // of the corners
@@ -107,8 +91,7 @@ class DetailField {
     CornerField misses_;              // weighted sum and weight of each corner
     CornerField detail_;
     CornerScalars doubt_px_;
-    CornerField fitted_before_;              // the whole discrepancy
-    PerOverlap<Range> fitted_before_range_;  // where it was fitted, or fades
+    DetailPast past_;
 };
 
 }  // namespace hitchview::algo

@@ -127,8 +127,8 @@ DetailFieldOptions DetailOptions(const Projection& canvas, double kappa) {
     const double fineness = Fineness(canvas);
     DetailFieldOptions options{.kappa = kappa};
     for (double* px : {&options.reach_px, &options.outlier_px, &options.most_doubt_px,
-                       &options.unknown_px, &options.sure_px, &options.unsure_px,
-                       &options.unsure_step_px, &options.scanlines.lowest_px,
+                       &options.unknown_px, &options.past.sure_px, &options.past.unsure_px,
+                       &options.past.most_step_px, &options.scanlines.lowest_px,
                        &options.scanlines.step_px, &options.scanlines.tolerance_px})
         *px *= fineness;
     return options;

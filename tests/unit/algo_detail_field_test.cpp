@@ -173,7 +173,7 @@ TEST_F(DetailFieldTest, WhatIsLostFadesByAndBy) {
     ASSERT_NEAR(last, 48, 0.5);
     for (int fit = 0; fit < 60; ++fit) {
         FitAnew();
-        EXPECT_LE(last - At(10, 38).x(), DetailFieldOptions{}.unsure_step_px + 1e-4) << fit;
+        EXPECT_LE(last - At(10, 38).x(), DetailPastOptions{}.most_step_px + 1e-4) << fit;
         last = At(10, 38).x();
     }
     ExpectNothing();
@@ -196,9 +196,9 @@ TEST_F(DetailFieldTest, WhereSamplesDisagreeNothingLeaps) {
         FitAnew([&] { Show({160, 0}, {440, 176}, Torn(30)); });
         for (int row = 2; row < 20; ++row) {
             for (int col = 22; col < 54; ++col) {
-                ASSERT_GT(Doubt(row, col), DetailFieldOptions{}.unsure_px);
+                ASSERT_GT(Doubt(row, col), DetailPastOptions{}.unsure_px);
                 EXPECT_LE(At(row, col).cwiseAbs().maxCoeff(),
-                          fit * DetailFieldOptions{}.unsure_step_px + 1e-4);
+                          fit * DetailPastOptions{}.most_step_px + 1e-4);
             }
         }
     }
@@ -214,8 +214,8 @@ TEST_F(DetailFieldTest, WhatIsInDoubtGoesAlongWithWhatIsSureInItsRow) {
     Fit();
     const double before = At(10, 39).x();
     FitAnew([&] { show(20); });
-    ASSERT_GT(Doubt(10, 39), DetailFieldOptions{}.unsure_px);
-    EXPECT_NEAR(At(10, 39).x() - before, 20, 2 + DetailFieldOptions{}.unsure_step_px);
+    ASSERT_GT(Doubt(10, 39), DetailPastOptions{}.unsure_px);
+    EXPECT_NEAR(At(10, 39).x() - before, 20, 2 + DetailPastOptions{}.most_step_px);
 }
 
 TEST_F(DetailFieldTest, AfterAResetNothingIsLeftAndNothingHeld) {
