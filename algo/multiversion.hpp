@@ -6,7 +6,7 @@
 /// must be inlined into it.
 /// Empty where there is no GNU indirect function, and under sanitizers, which run before it.
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    !defined(HITCHVIEW_SANITIZED)
 #define HV_MULTIVERSION __attribute__((target_clones("avx2", "default")))
 #else
 #define HV_MULTIVERSION
