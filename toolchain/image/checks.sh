@@ -349,8 +349,13 @@ reboot_machine() {
     done
 }
 
-# The arm64 image boots by UEFI and makes panoramas of a recording.
-check_arm64() {
+# The images boot by UEFI and make panoramas of a recording.
+check_uefi_amd64() {
     cut_power
-    toolchain/image/test_arm64
+    toolchain/image/test_uefi amd64
+}
+
+check_uefi_arm64() {
+    cut_power
+    toolchain/image/test_uefi arm64
 }
