@@ -17,13 +17,12 @@
 
 namespace hitchview::drivers {
 class LcmLogCanBus;
-class LoopedFrames;
-class SimulatedRig;
 struct SheetOptions;
 }  // namespace hitchview::drivers
 
 namespace hitchview::app {
 
+class BoardSimulation;
 struct FaultScript;
 struct LogCamera;
 
@@ -80,18 +79,13 @@ class Board {
 
  private:
     explicit Board(const Options& options);
-    hal::Checked<hal::Done> OpenSimulation(const RigConfig& config);
     hal::Checked<hal::Done> OpenCamera(const RigConfig& config, algo::Unit unit,
                                        const CameraConfig& camera, int slots);
-    std::unique_ptr<hal::Camera> OpenSimulatedCamera(const RigConfig& config,
-                                                     const std::string& name, int index, int slots);
     hal::Checked<hal::Done> OpenLiveCameras(const RigConfig& config, int slots);
     hal::Checked<hal::Done> OpenLiveSimulation(const RigConfig& config, int slots);
-    void OpenSimulatedCan(const RigConfig& config);
     void OpenLogCamera(const RigConfig& config, algo::Unit unit, const CameraConfig& camera,
                        int slots);
-    hal::Camera& Add(algo::Unit unit, const std::string& name,
-                     std::unique_ptr<hal::Camera> camera);
+    hal::Camera& Add(algo::Unit unit, const std::string& name, std::unique_ptr<hal::Camera> camera);
     std::unique_ptr<hal::Camera> WithFaults(const std::string& name,
                                             std::unique_ptr<hal::Camera> camera);
     void StartSets(const RigConfig& config);
@@ -100,8 +94,7 @@ class Board {
 
     const Options options_;
     std::unique_ptr<hal::Clock> clock_;
-    std::unique_ptr<drivers::SimulatedRig> simulation_;
-    std::unique_ptr<drivers::LoopedFrames> loop_;  ///< of its cameras; null: the whole drive
+    std::unique_ptr<BoardSimulation> simulation_;  ///< null: nothing is simulated
     Cameras cameras_;
     std::vector<FrameTap*> taps_;
     std::vector<LiveCamera> live_cameras_;
