@@ -4,13 +4,13 @@
 #include <cstdlib>
 #include <string>
 
-#include "app/board_simulation.hpp"
 #include "app/camera_ahead.hpp"
 #include "app/faulty_camera.hpp"
 #include "app/live_opening.hpp"
 #include "app/log_replay.hpp"
 #include "app/placed_camera.hpp"
 #include "app/publish_options.hpp"
+#include "app/simulated_devices.hpp"
 #include "app/tapped_camera.hpp"
 #include "drivers/candump_can_bus.hpp"
 #include "drivers/lcm_log_camera.hpp"
@@ -46,12 +46,12 @@ Board::~Board() = default;
 hal::Checked<std::unique_ptr<Board>> Board::Open(const RigConfig& config, const Options& options,
                                                  std::unique_ptr<Board> earlier) {
     std::unique_ptr<Board> board(new Board(options));
-    std::unique_ptr<BoardSimulation> shown_before;
+    std::unique_ptr<SimulatedDevices> shown_before;
     if (earlier) shown_before = std::move(earlier->simulation_);
     earlier.reset();
     const int slots = SlotsOf(options);
     if (config.period) board->period_ = *config.period;
-    auto simulation = BoardSimulation::Open(config, options.held_sheet, std::move(shown_before));
+    auto simulation = SimulatedDevices::Open(config, options.held_sheet, std::move(shown_before));
     if (!simulation) return simulation.error();
     board->simulation_ = std::move(*simulation);
     board->is_live_ = config.IsLive();

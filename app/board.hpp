@@ -22,7 +22,7 @@ struct SheetOptions;
 
 namespace hitchview::app {
 
-class BoardSimulation;
+class SimulatedDevices;
 struct FaultScript;
 struct LogCamera;
 
@@ -94,7 +94,7 @@ class Board {
 
     const Options options_;
     std::unique_ptr<hal::Clock> clock_;
-    std::unique_ptr<BoardSimulation> simulation_;  ///< null: nothing is simulated
+    std::unique_ptr<SimulatedDevices> simulation_;  ///< null: nothing is simulated
     Cameras cameras_;
     std::vector<FrameTap*> taps_;
     std::vector<LiveCamera> live_cameras_;

@@ -61,10 +61,10 @@ expect_caught(drivers/lcm_publisher.cpp [["algo/camera_model.hpp"]]
 expect_caught(drivers/simulated_rig.cpp [["drivers/lcm_url.hpp"]]
     "driver simulated may not include another driver, drivers/lcm_url.hpp")
 expect_caught(app/config.hpp [["drivers/lcm_url.hpp"]]
-    "app/config.hpp:2: only app/board.cpp may name a concrete driver, not drivers/lcm_url.hpp")
-expect_caught(app/view_verb.cpp [["drivers/lcm_url.hpp"]] "only app/board.cpp may name a concrete driver")
-expect_caught(app/truth_sight.cpp [["drivers/lcm_publisher.hpp"]] "only app/board.cpp may name a concrete driver")
-expect_caught(app/evaluation.cpp [["drivers/simulated_rig.hpp"]] "only app/board.cpp may name a concrete driver")
+    "app/config.hpp:2: only app/board.cpp and its parts may name a concrete driver, not drivers/lcm_url.hpp")
+expect_caught(app/view_verb.cpp [["drivers/lcm_url.hpp"]] "only app/board.cpp and its parts may name a concrete driver")
+expect_caught(app/truth_sight.cpp [["drivers/lcm_publisher.hpp"]] "only app/board.cpp and its parts may name a concrete driver")
+expect_caught(app/evaluation.cpp [["drivers/simulated_rig.hpp"]] "only app/board.cpp and its parts may name a concrete driver")
 expect_caught(app/frame_set.hpp [["hal/hitch_angle.hpp"]] "reached: app/frame_set.hpp -> hal/hitch_angle.hpp")
 expect_caught(app/rig_geometry.cpp [["hal/publisher.hpp"]] "reached: app/rig_geometry.cpp -> hal/publisher.hpp")
 expect_caught(app/pipeline.hpp [["hal/publisher.hpp"]]

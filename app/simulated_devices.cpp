@@ -1,4 +1,4 @@
-#include "app/board_simulation.hpp"
+#include "app/simulated_devices.hpp"
 
 #include <algorithm>
 
@@ -92,10 +92,10 @@ bool IsNeeded(const RigConfig& config) {
 
 }  // namespace
 
-hal::Checked<std::unique_ptr<BoardSimulation>> BoardSimulation::Open(
+hal::Checked<std::unique_ptr<SimulatedDevices>> SimulatedDevices::Open(
     const RigConfig& config, const drivers::SheetOptions* held_sheet,
-    std::unique_ptr<BoardSimulation> earlier) {
-    if (!IsNeeded(config)) return std::unique_ptr<BoardSimulation>{};
+    std::unique_ptr<SimulatedDevices> earlier) {
+    if (!IsNeeded(config)) return std::unique_ptr<SimulatedDevices>{};
     const std::string& name = config.simulation.scenario;
     const drivers::Scenario* scenario = drivers::FindScenario(name);
     if (scenario == nullptr) {
@@ -111,21 +111,21 @@ hal::Checked<std::unique_ptr<BoardSimulation>> BoardSimulation::Open(
     if (earlier) loop = std::move(earlier->loop_);
     const auto& looped = config.simulation.loop_frames;
     if (looped && !loop) loop = RenderLoop(**rig, IndicesOf(**rig, config), *looped);
-    return std::unique_ptr<BoardSimulation>(
-        new BoardSimulation(config, std::move(*rig), std::move(loop)));
+    return std::unique_ptr<SimulatedDevices>(
+        new SimulatedDevices(config, std::move(*rig), std::move(loop)));
 }
 
-BoardSimulation::BoardSimulation(const RigConfig& config,
-                                 std::unique_ptr<drivers::SimulatedRig> rig,
-                                 std::unique_ptr<drivers::LoopedFrames> loop)
+SimulatedDevices::SimulatedDevices(const RigConfig& config,
+                                   std::unique_ptr<drivers::SimulatedRig> rig,
+                                   std::unique_ptr<drivers::LoopedFrames> loop)
     : file_(config.file.string()),
       config_(config.simulation),
       rig_(std::move(rig)),
       loop_(std::move(loop)) {}
 
-hal::Checked<std::unique_ptr<hal::Camera>> BoardSimulation::OpenCamera(algo::Unit unit,
-                                                                       const std::string& name,
-                                                                       int slots) const {
+hal::Checked<std::unique_ptr<hal::Camera>> SimulatedDevices::OpenCamera(algo::Unit unit,
+                                                                        const std::string& name,
+                                                                        int slots) const {
     const auto index = Find(unit, name);
     if (!index) return index.error();
     std::unique_ptr<hal::Camera> camera;
@@ -142,7 +142,7 @@ hal::Checked<std::unique_ptr<hal::Camera>> BoardSimulation::OpenCamera(algo::Uni
     return std::unique_ptr<hal::Camera>(std::make_unique<CameraAhead>(std::move(camera), name));
 }
 
-hal::Checked<std::unique_ptr<hal::Camera>> BoardSimulation::OpenLiveCamera(
+hal::Checked<std::unique_ptr<hal::Camera>> SimulatedDevices::OpenLiveCamera(
     algo::Unit unit, const std::string& name, int slots, hal::Instant start,
     hal::Clock& clock) const {
     const auto index = Find(unit, name);
@@ -153,7 +153,7 @@ hal::Checked<std::unique_ptr<hal::Camera>> BoardSimulation::OpenLiveCamera(
         std::make_unique<drivers::LoopedLiveCamera>(*loop_, options, clock));
 }
 
-std::unique_ptr<hal::CanBus> BoardSimulation::OpenCanBus(hal::Clock& clock) const {
+std::unique_ptr<hal::CanBus> SimulatedDevices::OpenCanBus(hal::Clock& clock) const {
     drivers::SimulatedCanOptions options{.frames = RunFrames(),
                                          .loop_frames = config_.loop_frames.value_or(0)};
     if (config_.live) {
@@ -163,7 +163,7 @@ std::unique_ptr<hal::CanBus> BoardSimulation::OpenCanBus(hal::Clock& clock) cons
     return std::make_unique<drivers::SimulatedCanBus>(*rig_, options);
 }
 
-hal::Checked<int> BoardSimulation::Find(algo::Unit unit, const std::string& name) const {
+hal::Checked<int> SimulatedDevices::Find(algo::Unit unit, const std::string& name) const {
     const int index = IndexOf(*rig_, unit, name);
     if (index >= 0) return index;
     return file_ + ": camera " + name + " of the " + ToString(unit) +
@@ -172,7 +172,7 @@ hal::Checked<int> BoardSimulation::Find(algo::Unit unit, const std::string& name
 }
 
 /// Until the end, unless it is live.
-int BoardSimulation::RunFrames() const {
+int SimulatedDevices::RunFrames() const {
     return config_.frames.value_or(rig_->options().frames);
 }
 

@@ -14,13 +14,13 @@ namespace hitchview::app {
 
 /// The simulated vehicle of a rig file, as the board's devices see it: a drive, or a loop of its
 /// first frames. It must outlive the devices that it opens.
-class BoardSimulation {
+class SimulatedDevices {
  public:
     /// Null where the rig has nothing simulated. `held_sheet`: before each camera, or null.
     /// `earlier`: of the same rig, or null; the loop that it rendered is shown again.
-    static hal::Checked<std::unique_ptr<BoardSimulation>> Open(
+    static hal::Checked<std::unique_ptr<SimulatedDevices>> Open(
         const RigConfig& config, const drivers::SheetOptions* held_sheet,
-        std::unique_ptr<BoardSimulation> earlier);
+        std::unique_ptr<SimulatedDevices> earlier);
 
     /// As fast as it is read, a few frames ahead of the reader. Error: no such camera there.
     [[nodiscard]] hal::Checked<std::unique_ptr<hal::Camera>> OpenCamera(algo::Unit unit,
@@ -34,8 +34,8 @@ class BoardSimulation {
     [[nodiscard]] std::unique_ptr<hal::CanBus> OpenCanBus(hal::Clock& clock) const;
 
  private:
-    BoardSimulation(const RigConfig& config, std::unique_ptr<drivers::SimulatedRig> rig,
-                    std::unique_ptr<drivers::LoopedFrames> loop);
+    SimulatedDevices(const RigConfig& config, std::unique_ptr<drivers::SimulatedRig> rig,
+                     std::unique_ptr<drivers::LoopedFrames> loop);
     [[nodiscard]] hal::Checked<int> Find(algo::Unit unit, const std::string& name) const;
     [[nodiscard]] int RunFrames() const;
 
