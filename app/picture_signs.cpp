@@ -18,9 +18,11 @@ constexpr float kWhiteShare = 0.6F;
 /// Parts of a picture that are looked at for its sharpness: under a smear even the sharpest are
 /// blurred, behind the plain side of a lorry some are not.
 constexpr std::size_t kSharpestCells = 8;
-/// Shares of what is expected below which the detail of a picture, and of a part, counts as lost.
+/// Shares of what is expected below which the detail of a picture, and of a part, counts as lost,
+/// and above which that of a part is found again: the scene makes it come and go.
 constexpr float kLostSharpness = 0.1F;
 constexpr float kLostDetail = 0.12F;
+constexpr float kFoundDetail = 0.2F;
 /// Detail (grey levels squared) of parts and pictures that have any.
 constexpr float kSomeDetail = 60;
 /// Of the parts that can be judged.
@@ -105,12 +107,14 @@ bool PictureSigns::IsDirty(Camera& camera, const Cells& usual) {
     int judged = 0;
     int lost = 0;
     for (std::size_t i = 0; i < usual.size(); ++i) {
-        const float expected = camera.habits[i].Expects(usual[i]);
+        Part& part = camera.parts[i];
+        const float expected = part.habit.Expects(usual[i]);
         const bool is_judged = expected >= kSomeDetail;
-        const bool is_lost = is_judged && camera.recent[i] < kLostDetail * expected;
+        part.lost =
+            is_judged && camera.recent[i] < (part.lost ? kFoundDetail : kLostDetail) * expected;
         judged += is_judged ? 1 : 0;
-        lost += is_lost ? 1 : 0;
-        if (!is_lost) camera.habits[i].Learn(camera.recent[i], usual[i]);
+        lost += part.lost ? 1 : 0;
+        if (!part.lost) part.habit.Learn(camera.recent[i], usual[i]);
     }
     return lost >= kDirtyCells &&
            static_cast<float>(lost) >= kDirtyShare * static_cast<float>(judged);

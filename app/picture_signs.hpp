@@ -42,6 +42,11 @@ class PictureSigns {
         int sets = 0;  ///< that it was learnt from, up to as many as it is of
     };
 
+    struct Part {
+        Habit habit;
+        bool lost = false;  ///< its detail
+    };
+
     struct Camera {
         bool present = false;   ///< in this set
         bool compared = false;  ///< with the others: it shows something
@@ -52,7 +57,7 @@ class PictureSigns {
         bool repeated = false;                            ///< all of it is
         float sharpness = 0;                              ///< of the sharpest parts
         Cells recent{};  ///< detail of each part, the most of the last moments
-        std::array<Habit, algo::PictureLook::kCells> habits{};
+        std::array<Part, algo::PictureLook::kCells> parts{};
     };
 
     static bool Repeats(Camera& camera, const algo::CameraFrame& picture);

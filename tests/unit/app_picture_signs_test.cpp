@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "app/picture_signs.hpp"
+
+namespace hitchview::app {
+namespace {
+
+using hal::CameraState;
+
+constexpr int kCols = 160;
+constexpr int kRows = 120;
+constexpr std::size_t kCameras = 4;
+constexpr std::size_t kDirty = 1;
+
+/// Noise round grey; `contrast`: of its grey levels.
+std::vector<std::uint8_t> PictureOf(double contrast) {
+    std::mt19937 dice(7);
+    std::uniform_real_distribution<double> level(-40, 40);
+    std::vector<std::uint8_t> luma(static_cast<std::size_t>(kCols * kRows));
+    for (std::uint8_t& pixel : luma)
+        pixel = static_cast<std::uint8_t>(128 + contrast * level(dice));
+    return luma;
+}
+
+algo::CameraFrame FrameOf(const std::vector<std::uint8_t>& luma) {
+    algo::CameraFrame frame{.width_px = kCols, .height_px = kRows};
+    frame.luma = luma.data();
+    frame.luma_stride_bytes = kCols;
+    frame.layout = algo::PixelLayout::kGrey;
+    return frame;
+}
+
+class PictureSignsTest : public testing::Test {
+ protected:
+    /// What one camera shows after so many sets in which its detail, squared grey levels, is this
+    /// share of what the others have.
+    bool IsDirtyAfter(int sets, double share) {
+        const std::vector<std::uint8_t> usual = PictureOf(1);
+        const std::vector<std::uint8_t> dirty = PictureOf(std::sqrt(share));
+        std::array<CameraSigns, kMaxCameras> found{};
+        for (int set = 0; set < sets; ++set) {
+            found = {};
+            signs_.Begin();
+            for (std::size_t i = 0; i < kCameras; ++i)
+                signs_.Add(i, FrameOf(i == kDirty ? dirty : usual));
+            signs_.Finish(found);
+        }
+        EXPECT_FALSE(found[0][CameraState::kDirty]);
+        return found[kDirty][CameraState::kDirty];
+    }
+
+    static constexpr int kUntilForgotten = 60;  // sets, then nothing of the past is left
+    PictureSigns signs_;
+};
+
+TEST_F(PictureSignsTest, DetailIsLostBelowOneShareAndFoundAboveAnother) {
+    EXPECT_FALSE(IsDirtyAfter(kUntilForgotten, 0.16));
+    EXPECT_TRUE(IsDirtyAfter(kUntilForgotten, 0.11));
+    EXPECT_TRUE(IsDirtyAfter(kUntilForgotten, 0.16)) << "the scene makes it come and go";
+    EXPECT_FALSE(IsDirtyAfter(1, 0.25));
+    EXPECT_FALSE(IsDirtyAfter(kUntilForgotten, 0.16));
+}
+
+}  // namespace
+}  // namespace hitchview::app
