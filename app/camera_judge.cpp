@@ -61,6 +61,11 @@ constexpr bool IsOfPicture(CameraState state) {
            state == CameraState::kBlurred || state == CameraState::kDirty;
 }
 
+/// What a picture that is shown again says nothing new of.
+constexpr bool IsOfDetail(CameraState state) {
+    return state == CameraState::kBlurred || state == CameraState::kDirty;
+}
+
 }  // namespace
 
 CameraJudge::CameraJudge(hal::Instant period)
@@ -68,8 +73,9 @@ CameraJudge::CameraJudge(hal::Instant period)
 
 void CameraJudge::Note(const CameraSigns& signs, bool has_picture) {
     for (const CameraState state : hal::kCameraStates) {
-        if (has_picture || !IsOfPicture(state))
-            timers_[static_cast<std::size_t>(state)].Note(signs[state]);
+        if (!has_picture && IsOfPicture(state)) continue;
+        if (signs[CameraState::kFrozen] && IsOfDetail(state)) continue;
+        timers_[static_cast<std::size_t>(state)].Note(signs[state]);
     }
 }
 

@@ -129,7 +129,8 @@ void PictureSigns::Finish(std::array<CameraSigns, kMaxCameras>& signs) {
         signs[i][CameraState::kBlack] = look.mean < kBlackMean && look.dark_share >= kBlackShare;
         signs[i][CameraState::kBlinded] = look.bright_share >= kWhiteShare;
         signs[i][CameraState::kFrozen] = camera.repeated;
-        camera.compared = !signs[i][CameraState::kBlack] && !signs[i][CameraState::kBlinded];
+        camera.compared =
+            !signs[i][CameraState::kBlack] && !signs[i][CameraState::kBlinded] && !camera.repeated;
     }
     FindBlurred(signs);
     FindDirty(signs);

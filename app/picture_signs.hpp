@@ -49,7 +49,7 @@ class PictureSigns {
 
     struct Camera {
         bool present = false;   ///< in this set
-        bool compared = false;  ///< with the others: it shows something
+        bool compared = false;  ///< with the others: it shows something new
         algo::PictureLook look;
         std::uint64_t print_before = 0;
         std::optional<std::uint64_t> whole_print_before;  ///< where the samples were equal, too
