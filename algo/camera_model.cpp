@@ -100,12 +100,4 @@ std::string_view ToString(CameraModel::Kind kind) {
     return kind == CameraModel::Kind::kPinholeRadtan ? "pinhole_radtan" : "kannala_brandt4";
 }
 
-std::optional<CameraModel::Kind> CameraModelKind(std::string_view name) {
-    for (const auto kind :
-         {CameraModel::Kind::kPinholeRadtan, CameraModel::Kind::kKannalaBrandt4}) {
-        if (ToString(kind) == name) return kind;
-    }
-    return std::nullopt;
-}
-
 }  // namespace hitchview::algo

@@ -40,8 +40,8 @@ struct CameraModel {
     [[nodiscard]] std::optional<Eigen::Vector3d> Unproject(const Eigen::Vector2d& pixel) const;
 };
 
+/// As it stands in calibration files.
 std::string_view ToString(CameraModel::Kind kind);
-std::optional<CameraModel::Kind> CameraModelKind(std::string_view name);
 
 /// A camera fixed to its unit. Unit frame: origin in the hitch point, x forward, y left, z up,
 /// metres.

@@ -19,12 +19,16 @@ int SourceIndex(Unit unit, int camera) {
     return static_cast<int>(unit) * static_cast<int>(kMaxCameras) + camera;
 }
 
-/// Mean grey around (x, y); negative when it does not lie inside.
+/// Mean grey around (x, y); negative when it does not lie inside. What a lens says of directions
+/// far beyond its picture may be no number of pixels at all.
 double MeanAround(const CameraFrame& frame, float x, float y) {
+    constexpr float kHalf = kPatch / 2;
+    const auto lies_inside = [](float at, int size_px) {
+        return at >= kHalf && at < static_cast<float>(size_px) - kHalf + 1;
+    };
+    if (!lies_inside(x, frame.width_px) || !lies_inside(y, frame.height_px)) return -1;
     const int x0 = static_cast<int>(x) - kPatch / 2;
     const int y0 = static_cast<int>(y) - kPatch / 2;
-    if (x0 < 0 || y0 < 0 || x0 + kPatch > frame.width_px || y0 + kPatch > frame.height_px)
-        return -1;
     const SamplePlane luma = frame.LumaSamples();
     int sum = 0;
     for (int r = 0; r < kPatch; r += kPatchStep) {

@@ -32,7 +32,8 @@ int StepAt(const ComposedMap& map, int source, int row, int col) {
     const float down = beside.y - here.y;
     const float moved_px = std::sqrt(across * across + down * down);
     const float step = moved_px * kSampleStep_px / static_cast<float>(map.block_px());
-    return std::clamp(static_cast<int>(step + 0.5F), 1, 2 * map.block_px());
+    const auto most = static_cast<float>(2 * map.block_px());
+    return static_cast<int>(std::clamp(step + 0.5F, 1.0F, most));
 }
 
 /// Of `count` values and those `spacing` beside them.

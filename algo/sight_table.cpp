@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "algo/multiversion.hpp"
 
@@ -12,8 +13,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// How far a stabilised view may be tilted, so that more of it is seen above or below.
-constexpr double kTilt_rad = 0.2;
+/// How far a view may be tilted, so that more of it is seen above or below: the trailer's by its
+/// pitch and roll against the tractor and, as the tractor's, by what steadies it.
+constexpr double kTilt_rad = 30 * std::numbers::pi / 180;
+/// So far from the horizon it is tabulated at most.
+constexpr double kSteepest_rad = 80 * std::numbers::pi / 180;
 /// Instead of a margin, which is not less than 0; so low that no share is left.
 constexpr float kNoShare = -1;
 constexpr float kLeastSum = 1e-6F;  // without a share
@@ -22,6 +26,12 @@ constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 
 int RowsOver(double length_px, double pitch_px) {
     return std::max(1, static_cast<int>(std::ceil(length_px / pitch_px)));
+}
+
+/// How far from the horizon a tilted view reaches that reaches `length_px` when it is level.
+double ReachTilted_px(double length_px, double focal_px) {
+    const double level_rad = std::atan2(length_px, focal_px);
+    return focal_px * std::tan(std::max(level_rad, std::min(level_rad + kTilt_rad, kSteepest_rad)));
 }
 
 /// Into `share`: distance to the nearer side edge, as a share of the width; kNoShare where the
@@ -67,12 +77,15 @@ void ShareByMargins(SightRuns& sights) {
 SightTable::SightTable(const UnitGeometry& geometry)
     : ring_(geometry.view().IsRing()),
       pitch_px_(1.0 * geometry.view().width_px / kCols),
-      edge_px_(geometry.SurfaceEdge_px()),
-      rows_to_edge_(RowsOver(edge_px_ + kTilt_rad * geometry.view().focal_px, pitch_px_)),
-      rows_(rows_to_edge_ + 1 +
-            RowsOver(geometry.view().height_px - edge_px_ + kTilt_rad * geometry.view().focal_px,
-                     pitch_px_)) {
-    if (ring_) Fill(geometry);
+      edge_px_(geometry.SurfaceEdge_px()) {
+    if (!ring_) return;
+    const Projection& view = geometry.view();
+    const double horizon_px = view.horizon_y_px;
+    const double above_px = ReachTilted_px(horizon_px, view.focal_px);
+    const double below_px = ReachTilted_px(view.height_px - horizon_px, view.focal_px);
+    rows_to_edge_ = RowsOver(edge_px_ - horizon_px + above_px, pitch_px_);
+    rows_ = rows_to_edge_ + 1 + RowsOver(horizon_px - edge_px_ + below_px, pitch_px_);
+    Fill(geometry);
 }
 
 void SightTable::Fill(const UnitGeometry& geometry) {
@@ -93,13 +106,25 @@ void SightTable::Fill(const UnitGeometry& geometry) {
         }
     }
     cameras_.resize(cameras);
+    seeing_.assign(static_cast<std::size_t>((rows_ / kBandRows + 1) * kCols), 0);
     for (std::size_t i = 0; i < cameras; ++i) {
+        NoteSeeing(whole[i], static_cast<std::uint8_t>(1U << i));
         cameras_[i].width_px = static_cast<float>(geometry.camera_width_px(static_cast<int>(i)));
         cameras_[i].height_px = static_cast<float>(geometry.camera_height_px(static_cast<int>(i)));
         Crop(whole[i], cameras_[i]);
-        for (int col = 0; col + 1 < cameras_[i].cols; ++col)
-            seeing_[static_cast<std::size_t>((cameras_[i].first + col) % kCols)] |=
-                static_cast<std::uint8_t>(1U << i);
+    }
+}
+
+void SightTable::NoteSeeing(const std::vector<Node>& whole, std::uint8_t camera_bit) {
+    const auto sees = [&](int row, int col) {
+        return !whole[static_cast<std::size_t>(row * kCols + col % kCols)].hasNaN();
+    };
+    for (int row = 0; row + 1 < rows_; ++row) {
+        for (int col = 0; col < kCols; ++col) {
+            if (sees(row, col) && sees(row, col + 1) && sees(row + 1, col) &&
+                sees(row + 1, col + 1))
+                seeing_[Band(row, col)] |= camera_bit;
+        }
     }
 }
 
@@ -154,8 +179,8 @@ void SightTable::FindCameras(const Places& places, int count, SightRuns& sights)
     std::array<int, kMaxCameras> end{};
     first.fill(count);
     for (int i = 0; i < count; ++i) {
-        const auto col = static_cast<std::size_t>(places.col[static_cast<std::size_t>(i)]);
-        for (unsigned rest = seeing_[col]; rest != 0; rest &= rest - 1) {
+        const auto place = static_cast<std::size_t>(i);
+        for (unsigned rest = seeing_[Band(places.row[place], places.col[place])]; rest != 0; rest &= rest - 1) {
             const auto camera = static_cast<std::size_t>(std::countr_zero(rest));
             first[camera] = std::min(first[camera], i);
             end[camera] = i + 1;

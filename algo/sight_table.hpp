@@ -44,7 +44,7 @@ struct SightRuns {
 };
 
 /// UnitGeometry::See for pixels of the unit's view, from a table: exact at the nodes of a grid over
-/// the view and a little above and below it, bilinear between them; beyond, and next to the edge of
+/// the view and, above and below, what tilts bring into it; bilinear between them; beyond, and next to the edge of
 /// what a lens sees, nothing is seen. Hundreds of times cheaper than lens models. Memory is taken
 /// at construction; thread-safe afterwards.
 class SightTable {
@@ -56,7 +56,8 @@ class SightTable {
     void See(const PixelRun& view, const CameraMask& present, SightRuns& sights) const;
 
  private:
-    static constexpr int kCols = 512;  ///< of nodes all round, whatever the view's size
+    static constexpr int kCols = 512;     ///< of nodes all round, whatever the view's size
+    static constexpr int kBandRows = 16;  ///< of nodes, for which it is known who sees any
 
     using Node = Eigen::Array2f;  ///< pixel; NaN where the camera has none, which spreads
     /// The columns of nodes that one camera sees: from `first`, perhaps across the view's edge.
@@ -76,6 +77,11 @@ class SightTable {
     };
 
     void Fill(const UnitGeometry& geometry);
+    void NoteSeeing(const std::vector<Node>& whole, std::uint8_t camera_bit);
+    /// Index into seeing_ of the field between four nodes whose top left one this is.
+    [[nodiscard]] static std::size_t Band(int row, int col) {
+        return static_cast<std::size_t>(row / kBandRows * kCols + col);
+    }
     void Crop(const std::vector<Node>& whole, Camera& camera) const;
     [[nodiscard]] bool SeesColumn(const std::vector<Node>& whole, int col) const;
     void Place(const PixelRun& view, Places& places) const;
@@ -83,12 +89,12 @@ class SightTable {
     void ReadPixels(const Places& places, CameraSightRun& sights) const;
 
     bool ring_;
-    double pitch_px_;   ///< of the nodes
-    double edge_px_;    ///< row of the view where the alignment surface has an edge
-    int rows_to_edge_;  ///< so that nodes lie on it
-    int rows_;
+    double pitch_px_;       ///< of the nodes
+    double edge_px_;        ///< row of the view where the alignment surface has an edge
+    int rows_to_edge_ = 0;  ///< so that nodes lie on it
+    int rows_ = 0;
     std::vector<Camera> cameras_;
-    std::array<std::uint8_t, kCols> seeing_{};  ///< bit per camera; from a column to the next
+    std::vector<std::uint8_t> seeing_;  ///< bit per camera; by bands of rows and by columns
 };
 
 }  // namespace hitchview::algo

@@ -55,15 +55,14 @@ std::array<SignTimer, sizeof...(kIndices)> Timers(hal::Instant period,
     return {TimerOf(hal::kCameraStates[kIndices], period)...};
 }
 
-constexpr bool IsOfPicture(CameraState state) {
-    return state == CameraState::kBlack || state == CameraState::kBlinded ||
-           state == CameraState::kFrozen || state == CameraState::kStuck ||
-           state == CameraState::kBlurred || state == CameraState::kDirty;
-}
-
 /// What a picture that is shown again says nothing new of.
 constexpr bool IsOfDetail(CameraState state) {
     return state == CameraState::kBlurred || state == CameraState::kDirty;
+}
+
+constexpr bool IsOfPicture(CameraState state) {
+    return state == CameraState::kBlack || state == CameraState::kBlinded ||
+           state == CameraState::kFrozen || state == CameraState::kStuck || IsOfDetail(state);
 }
 
 }  // namespace

@@ -133,9 +133,9 @@ void CameraWatch::Decide(std::size_t index, FrameSet& set, bool too_old) {
 }
 
 /// A loss that has been told is not told again, nor is its end.
-void CameraWatch::Tell(Camera& camera, CameraState state, bool device_told) {
+void CameraWatch::Tell(Camera& camera, CameraState state, bool device_gone) {
     const hal::Instant now = clock_.Now();
-    camera.device_told |= device_told;
+    NoteDevice(camera, state, device_gone, now);
     if (state != CameraState::kLost) camera.lost_at.reset();
     if (state == camera.told) return;
     if (state == CameraState::kLost) {
@@ -145,18 +145,37 @@ void CameraWatch::Tell(Camera& camera, CameraState state, bool device_told) {
     const bool known =
         camera.device_told && (state == CameraState::kLost ||
                                (state == CameraState::kGood && camera.told == CameraState::kLost));
-    if (!known) {
-        const hal::EventText text = TextOf(camera.told, state, now - camera.told_at);
-        if (!events_.is_on_stderr())
-            std::fprintf(stderr, "camera %s: %s\n", camera.picture.name.c_str(), text.c_str());
-        events_.Put({.code = WordsFor(state).code,
-                     .when = now,
-                     .subject = std::string_view(camera.picture.name),
-                     .text = text});
-    }
+    if (!known) Put(camera, state, now);
     if (camera.told == CameraState::kGood) camera.told_at = now;
     if (state == CameraState::kGood) camera.device_told = false;
     camera.told = state;
+}
+
+/// A device that is had again is told to be back with its first frame; if no good one follows, that
+/// was too early, and the loss is told anew.
+void CameraWatch::NoteDevice(Camera& camera, CameraState state, bool device_gone,
+                             hal::Instant now) {
+    camera.device_told |= device_gone;
+    const bool had = camera.device_told && !device_gone && camera.told == CameraState::kLost &&
+                     state == CameraState::kLost;
+    if (!had) {
+        camera.had_since.reset();
+        return;
+    }
+    if (!camera.had_since) camera.had_since = now;
+    if (now - *camera.had_since < LivePatience(period_)) return;
+    camera.device_told = false;
+    Put(camera, state, now);
+}
+
+void CameraWatch::Put(const Camera& camera, CameraState state, hal::Instant now) {
+    const hal::EventText text = TextOf(camera.told, state, now - camera.told_at);
+    if (!events_.is_on_stderr())
+        std::fprintf(stderr, "camera %s: %s\n", camera.picture.name.c_str(), text.c_str());
+    events_.Put({.code = WordsFor(state).code,
+                 .when = now,
+                 .subject = std::string_view(camera.picture.name),
+                 .text = text});
 }
 
 void CameraWatch::Reset() {
@@ -167,6 +186,7 @@ void CameraWatch::Reset() {
         camera.sets_since_disorder = kDisorderLasts;
         camera.told = CameraState::kGood;
         camera.device_told = false;
+        camera.had_since.reset();
         camera.lost_at.reset();
     }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -25,9 +26,12 @@ struct WatchedPicture {
 /// after construction. Thread: pipeline.
 class CameraWatch {
  public:
-    /// Devices of live cameras tell themselves why they give nothing, within a second; what none
-    /// has told by then is told here.
-    static constexpr hal::Instant kLivePatience = std::chrono::milliseconds(1500);
+    /// Devices of live cameras tell themselves why they give nothing, by 30 periods of silence; what
+    /// none has told by then is told here.
+    static constexpr hal::Instant LivePatience(hal::Instant period) {
+        return std::chrono::milliseconds(500) +
+               std::max<hal::Instant>(std::chrono::seconds(1), 30 * period);
+    }
 
     /// `cameras` in the order of the bits of FrameSet::cameras_missing; `events` and `clock` must
     /// outlive it. `patience`: before it is told that a camera is lost, beside what its state
@@ -54,6 +58,7 @@ class CameraWatch {
         hal::Instant told_at{};
         std::optional<hal::Instant> lost_at{};
         bool device_told = false;  ///< whoever captures its frames has said that it is lost
+        std::optional<hal::Instant> had_since{};  ///< and had it again, while it was still lost
     };
 
     /// A stamp that goes back leaves doubt about the ones around it. Sets.
@@ -62,7 +67,9 @@ class CameraWatch {
     [[nodiscard]] hal::Instant MomentOf(const FrameSet& set) const;
     CameraSigns Look(std::size_t index, const FrameSet& set, hal::Instant moment);
     void Decide(std::size_t index, FrameSet& set, bool too_old);
-    void Tell(Camera& camera, hal::CameraState state, bool device_told);
+    void Tell(Camera& camera, hal::CameraState state, bool device_gone);
+    void NoteDevice(Camera& camera, hal::CameraState state, bool device_gone, hal::Instant now);
+    void Put(const Camera& camera, hal::CameraState state, hal::Instant now);
     [[nodiscard]] hal::FrameLease& LeaseOf(FrameSet& set, std::size_t index) const;
     [[nodiscard]] const hal::FrameLease& LeaseOf(const FrameSet& set, std::size_t index) const;
 

@@ -9,7 +9,6 @@ void FrameInbox::Put(std::size_t camera, hal::FrameLease frame, hal::Instant now
     const std::lock_guard lock(mutex_);
     if (closed_) return;
     Place& place = places_[camera];
-    place.heard_at = now;
     place.connected = true;
     ++place.counts.put;
     const hal::Instant before = std::exchange(place.newest_stamp, frame.view().header.captured_at);
@@ -18,6 +17,7 @@ void FrameInbox::Put(std::size_t camera, hal::FrameLease frame, hal::Instant now
         refused_.disordered[camera] = true;
         return;
     }
+    place.heard_at = now;
     place.pace.Add(frame.view().header);
     auto& [head, next] = place.frames;
     if (head && next) {
@@ -92,6 +92,13 @@ FrameInbox::Visit::Refused FrameInbox::Visit::TakeRefused() {
 
 void FrameInbox::Visit::Wait(std::chrono::nanoseconds timeout) {
     inbox_.changed_.wait_for(lock_, timeout);
+}
+
+std::uint64_t FrameInbox::Visit::Unused() const {
+    std::uint64_t unused = 0;
+    for (const Place& place : inbox_.places_)
+        unused += place.counts.superseded + place.counts.set_aside;
+    return unused;
 }
 
 InboxCounts FrameInbox::counts(std::size_t camera) const {

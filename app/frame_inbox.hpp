@@ -46,7 +46,7 @@ class FrameInbox {
 
         /// A camera that has been silent for `patience` is not awaited.
         [[nodiscard]] PendingFrames Pending(hal::Instant now, hal::Instant patience) const;
-        /// When any camera gave a frame last, or was opened.
+        /// When any camera gave a frame with a new stamp last, or was opened.
         [[nodiscard]] hal::Instant heard_at() const;
         /// Cameras whose device is gone, which CaptureThread has told.
         [[nodiscard]] CameraMask Gone() const;
@@ -57,6 +57,8 @@ class FrameInbox {
             CameraMask disordered;
         };
         Refused TakeRefused();
+        /// Frames of all cameras that came and were in no set.
+        [[nodiscard]] std::uint64_t Unused() const;
         /// The head of a camera that has one.
         hal::FrameLease Take(std::size_t camera);
         /// Heads.

@@ -68,7 +68,7 @@ FrameSet LiveFrameSynchronizer::TakeSet(FrameInbox::Visit& visit, const CameraMa
     }
     set.FindMoments();
     NoteMissing(visit, set);
-    Number(set, set.captured_until);
+    Number(visit, set, set.captured_until);
     ++(set.cameras_missing == 0 ? counts_.complete : counts_.partial);
     spread_.Add(set.captured_until - set.captured_from);
     return set;
@@ -88,21 +88,28 @@ FrameSet LiveFrameSynchronizer::EmptySet(FrameInbox::Visit& visit, hal::Instant 
     set.captured_from = set.captured_until = now;
     set.cameras_missing = (1U << cameras_.size()) - 1;
     NoteMissing(visit, set);
-    Number(set, now);
+    Number(visit, set, now);
     ++counts_.empty;
     return set;
 }
 
-void LiveFrameSynchronizer::Number(FrameSet& set, hal::Instant moment) {
+/// Sets lie a period apart on average, which the moments of free cameras lead and lag. One that is
+/// not there although frames came was skipped; one for which none came was not.
+void LiveFrameSynchronizer::Number(const FrameInbox::Visit& visit, FrameSet& set,
+                                   hal::Instant moment) {
+    constexpr int kFollow = 8;  // sets in which the grid goes most of the way to where they are
     const bool first = counts_.complete + counts_.partial + counts_.empty == 0;
     const double periods =
-        static_cast<double>((moment - newest_set_).count()) / static_cast<double>(period_.count());
-    const auto steps = static_cast<std::uint32_t>(std::max(1L, std::lround(periods)));
+        static_cast<double>((moment - set_due_).count()) / static_cast<double>(period_.count());
+    const auto steps = static_cast<std::uint32_t>(std::max(1L, 1 + std::lround(periods)));
+    const bool frames_came = visit.Unused() > std::exchange(unused_, visit.Unused());
     if (!first) {
         sequence_ += steps;
-        counts_.skipped += steps - 1;
+        if (frames_came) counts_.skipped += steps - 1;
     }
-    newest_set_ = moment;
+    set_due_ += steps * period_;
+    const hal::Instant off = moment + period_ - set_due_;
+    set_due_ += !first && std::abs(off.count()) < period_.count() ? off / kFollow : off;
     set.sequence = sequence_;
 }
 

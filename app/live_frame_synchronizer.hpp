@@ -26,7 +26,7 @@ struct SetCounts {
     std::uint64_t complete = 0;  ///< of all cameras of the rig
     std::uint64_t partial = 0;   ///< of some
     std::uint64_t empty = 0;     ///< of none: nothing to show came for long
-    std::uint64_t skipped = 0;   ///< periods that have no set
+    std::uint64_t skipped = 0;   ///< periods that have no set although frames came
 };
 
 /// What became of the frames of one live camera since it was opened.
@@ -70,7 +70,7 @@ class LiveFrameSynchronizer final : public FrameSynchronizer {
     FrameSet EmptySet(FrameInbox::Visit& visit, hal::Instant now);
     static void NoteMissing(FrameInbox::Visit& visit, FrameSet& set);
     FrameSet TakeSet(FrameInbox::Visit& visit, const CameraMask& taken);
-    void Number(FrameSet& set, hal::Instant moment);
+    void Number(const FrameInbox::Visit& visit, FrameSet& set, hal::Instant moment);
 
     std::vector<LiveCamera> cameras_;
     hal::Clock& clock_;
@@ -81,7 +81,8 @@ class LiveFrameSynchronizer final : public FrameSynchronizer {
     StageTimes spread_;
     hal::Instant empty_at_{};  ///< of the newest empty set
     std::uint32_t sequence_ = 0;
-    hal::Instant newest_set_{};
+    hal::Instant set_due_{};  ///< moment of the next set, where none is skipped
+    std::uint64_t unused_ = 0;
     std::vector<std::unique_ptr<CaptureThread>> threads_;  // last: they use the inbox
 };
 

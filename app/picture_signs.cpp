@@ -23,6 +23,9 @@ constexpr std::size_t kSharpestCells = 8;
 constexpr float kLostSharpness = 0.1F;
 constexpr float kLostDetail = 0.12F;
 constexpr float kFoundDetail = 0.2F;
+/// The most that a camera's habit lets it be expected to have beside the others: what it makes of a
+/// hedge while they see the sky says nothing of the road.
+constexpr float kRichest = 4;
 /// Detail (grey levels squared) of parts and pictures that have any.
 constexpr float kSomeDetail = 60;
 /// Of the parts that can be judged.
@@ -92,7 +95,8 @@ std::size_t PictureSigns::Compared() const {
 /// `usual`: what the cameras have in that part. Expected is that, or what this one usually makes of
 /// it where that is more: a part that is richer than the others' is missed when it is as theirs.
 float PictureSigns::Habit::Expects(float usual) const {
-    return sets < kFirstHabitSets ? usual : std::max(usual, std::exp(log_share) * usual);
+    if (sets < kFirstHabitSets) return usual;
+    return std::clamp(std::exp(log_share), 1.0F, kRichest) * usual;
 }
 
 void PictureSigns::Habit::Learn(float detail, float usual) {

@@ -220,9 +220,10 @@ hal::Checked<RunSummary> Run(const RigConfig& config, const RunOptions& options,
     auto outputs = RunOutputs::Open(config, options, {**board, rig.value(), pipeline}, summary);
     if (!outputs) return outputs.error();
     if (options.realtime) EnterRealTime(config.schedule);
-    CameraWatch watch(WatchedPictures(config), (*board)->period(), (*board)->events(),
-                      (*board)->clock(),
-                      (*board)->live() != nullptr ? CameraWatch::kLivePatience : hal::Instant{});
+    const hal::Instant period = (*board)->period();
+    CameraWatch watch(
+        WatchedPictures(config), period, (*board)->events(), (*board)->clock(),
+        (*board)->live() != nullptr ? CameraWatch::LivePatience(period) : hal::Instant{});
     if (IsWatched(config, options)) pipeline.SetWatch(&watch);
     PanoramaLoop loop({**board, *motion.any, pipeline, **outputs}, options, summary);
     const auto done = loop.Run(stop, hook);

@@ -1,6 +1,7 @@
 #include "app/set_rule.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace hitchview::app {
 namespace {
@@ -10,6 +11,7 @@ struct Moments {
     std::size_t count = 0;
 
     [[nodiscard]] hal::Instant newest() const { return at[count - 1]; }
+    [[nodiscard]] std::span<const hal::Instant> all() const { return {at.data(), count}; }
 };
 
 /// In order of time.
@@ -48,6 +50,24 @@ Gap WidestGap(const Moments& moments) {
         if (width > widest.width) widest = {width, moments.at[i]};
     }
     return widest;
+}
+
+struct Window {
+    hal::Instant begin{};
+    hal::Instant end{};
+};
+
+/// The one of this length with the most moments in it; of several the newest.
+Window FullestWindow(const Moments& moments, hal::Instant length) {
+    Window fullest;
+    std::ptrdiff_t most = 0;
+    for (const hal::Instant begin : moments.all()) {
+        const auto within = std::ranges::count_if(
+            moments.all(), [&](hal::Instant at) { return at >= begin && at <= begin + length; });
+        if (within >= most) fullest = {begin, begin + length};
+        most = std::max<std::ptrdiff_t>(most, within);
+    }
+    return fullest;
 }
 
 SetRule::Verdict SetAside(const CameraMask& cameras, hal::Instant now) {
@@ -103,10 +123,10 @@ SetRule::Grouping SetRule::Group(const PendingFrames& pending) const {
 }
 
 SetRule::Verdict SetRule::MakeSet(const PendingFrames& pending, const CameraMask& group) {
-    const CameraMask too_early =
-        Before(pending, Sorted(pending, group).newest() - tolerance_) & group;
+    const Window together = FullestWindow(Sorted(pending, group), tolerance_);
+    const CameraMask too_early = Before(pending, together.begin) & group;
     Verdict verdict;
-    verdict.taken = group & ~too_early;
+    verdict.taken = Before(pending, together.end + hal::Instant(1)) & group & ~too_early;
     verdict.set_aside = too_early;
     open_since_.reset();
     sets_without_regrouping_ = std::max(0, sets_without_regrouping_ - 1);

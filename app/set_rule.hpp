@@ -31,8 +31,8 @@ struct PendingFrames {
 ///   decides: the set is made without the later frames, which wait for the next one; or it waits
 ///   for the next frames of the earlier ones. Where those do not come in time, the set is made as
 ///   it is, and for kSetsWithoutRegrouping sets nothing is waited for in this way.
-/// * A frame captured longer before the newest one than the tolerance is set aside, and its camera
-///   is missing of this set.
+/// * Of frames that lie further apart than the tolerance, the most that it spans make the set.
+///   Earlier ones are set aside, later ones wait for the next set; their cameras are missing.
 /// * What nobody had time for is set aside: the heads, once every camera has a frame after it.
 ///
 /// Thread: one.

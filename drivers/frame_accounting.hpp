@@ -18,7 +18,10 @@ class FrameAccounting {
 
     /// A stream starts, anew or again: the device counts from wherever it likes. What it numbers
     /// first follows the last frame of before without a gap.
-    void Restart() { maybe_last_ = {}; }
+    void Restart() {
+        maybe_last_ = {};
+        numbers_ = false;
+    }
     void NoteReopened() { ++reopened_; }
 
     /// A frame left the device. kCorrupted, and so counted: it is marked as `damaged`, or its stamp
@@ -26,7 +29,8 @@ class FrameAccounting {
     /// is damaged, against the moment at which it was due.
     /// Sequence numbers may wrap. A step of the stamps of more than 1.5 periods between neighbours
     /// in sequence is frames that nobody numbered; in the sequence given out they are a gap only
-    /// where the device does not number its frames at all.
+    /// where the device does not number its frames at all. Of one that has counted, and then stays
+    /// at a number, the number given out stays, too.
     hal::Result<hal::FrameHeader> Accept(std::uint32_t device_sequence, hal::Instant stamp,
                                          bool damaged);
     void NoteDelivered() { ++delivered_; }
@@ -47,6 +51,7 @@ class FrameAccounting {
 
     hal::Instant period_;
     std::optional<Seen> maybe_last_;
+    bool numbers_ = false;  ///< the device has counted in this stream
     std::uint32_t sequence_ = 0;  ///< of the next frame without a gap
     std::atomic<std::uint64_t> delivered_ = 0;
     std::atomic<std::uint64_t> lost_ = 0;

@@ -205,13 +205,15 @@ V4l2Camera::MaybeAnswer V4l2Camera::TakeFrame() {
 
 V4l2Camera::MaybeAnswer V4l2Camera::Lend(const V4l2Buffers::Filled& filled) {
     // A driver may tell the end of a frame that is still to come; a stamp further ahead is not of
-    // this clock, whatever the driver says.
-    const V4l2StampSource source = filled.stamp > heard_at_ + period_ ? V4l2StampSource::kDequeue
-                                                                      : StampSourceOf(filled.flags);
+    // this clock, whatever the driver says, and none at all is of no clock.
+    const bool damaged_by_driver = (filled.flags & V4L2_BUF_FLAG_ERROR) != 0;
+    const bool has_stamp = filled.stamp <= heard_at_ + period_ &&
+                           (filled.stamp > hal::Instant{} || damaged_by_driver);
+    const V4l2StampSource source =
+        has_stamp ? StampSourceOf(filled.flags) : V4l2StampSource::kDequeue;
     const hal::Instant stamp = source == V4l2StampSource::kDequeue ? heard_at_ : filled.stamp;
     const auto maybe_planes = PlanesOf(facts_.granted.layout, filled.payload);
-    const bool damaged =
-        (filled.flags & V4L2_BUF_FLAG_ERROR) != 0 || (decoder_ == nullptr && !maybe_planes);
+    const bool damaged = damaged_by_driver || (decoder_ == nullptr && !maybe_planes);
     auto header = accounting_.Accept(filled.sequence, stamp, damaged);
     if (!header) return header.error();
     header->captured_at = ExposureStart(stamp, source, facts_.granted.maybe_exposure, period_);

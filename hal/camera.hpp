@@ -67,10 +67,10 @@ class Camera {
         return DoWaitFrame(timeout);
     }
 
-    /// After kDisconnected: tries once to have the device again, or for the first time if it was not
-    /// there when the program started, in the same format and without taking memory from the heap. Frames that are lent stay valid. kNotFound: it is not there;
-    /// kUnsupported: it came back as another device, or this camera cannot be reopened; kFailed:
-    /// see the log. Try again later.
+    /// After kDisconnected, or if it was not there at the start: tries once to have the device, in
+    /// the same format, without taking memory from the heap. Frames that are lent stay valid.
+    /// kNotFound: it is not there; kUnsupported: it came back as another device, or this camera
+    /// cannot be reopened; kFailed: see the log. Try again later.
     Result<Done> Reopen() { return DoReopen(); }
 
     /// After kDisconnected: why. Thread: WaitFrame's.

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -46,11 +47,17 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
     std::deque<Frame> script;  ///< handed out as buffers are queued
     int poll_errors = 0;       ///< so often poll tells of an error
     int failure = 0;           ///< errno of the stream from now on
+    std::map<unsigned long, int> failing;       ///< requests, and the errno that they fail with
+    std::uint32_t most_buffers = VIDEO_MAX_FRAME;
+    bool maps = true;
+    bool lets_go = false;                       ///< of buffers that are still mapped
+    std::optional<std::uint32_t> filled_index;  ///< told instead of that of a buffer it was given
     v4l2_dv_timings signal{};  ///< of the source
     v4l2_dv_timings timings{};
 
     int stream_starts = 0;
     int mapped = 0;
+    int let_go = 0;  ///< how often it was asked to let go of all buffers
     std::map<unsigned long, int> refused;  ///< requests, how often
 
     int Open(const char* /*path*/, int /*flags*/) override {
@@ -62,12 +69,17 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
         return 0;
     }
     int Ioctl(int /*file*/, unsigned long request, void* argument) override {
-        const int error = Answer(request, argument);
+        const auto fails = failing.find(request);
+        const int error = fails != failing.end() ? fails->second : Answer(request, argument);
         if (error == 0) return 0;
         ++refused[request];
         return Refuse(error);
     }
     void* Map(int file, std::size_t /*bytes*/, off_t offset) override {
+        if (!maps) {
+            errno = ENOMEM;
+            return MAP_FAILED;
+        }
         ++mapped;
         const int index =
             file == kDevice ? static_cast<int>(offset) / kOffset : file - kFirstDmabuf;
@@ -143,10 +155,7 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
                 As<v4l2_streamparm>(argument).parm.capture.timeperframe = {1, 100};
                 return has_rate ? 0 : ENOTTY;
             case VIDIOC_REQBUFS:
-                memory_.resize(
-                    std::max<std::size_t>(memory_.size(), As<v4l2_requestbuffers>(argument).count));
-                for (auto& buffer : memory_) buffer.resize(kBufferBytes);
-                return 0;
+                return GiveBuffers(As<v4l2_requestbuffers>(argument));
             case VIDIOC_QUERYBUF:
                 As<v4l2_buffer>(argument).length = kBufferBytes;
                 As<v4l2_buffer>(argument).m.offset = As<v4l2_buffer>(argument).index * kOffset;
@@ -219,6 +228,15 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
         return 0;
     }
 
+    int GiveBuffers(v4l2_requestbuffers& request) {
+        if (request.count == 0) ++let_go;
+        request.count = std::min(request.count, most_buffers);
+        request.capabilities = lets_go ? V4L2_BUF_CAP_SUPPORTS_ORPHANED_BUFS : 0;
+        memory_.resize(std::max<std::size_t>(memory_.size(), request.count));
+        for (auto& buffer : memory_) buffer.resize(kBufferBytes);
+        return 0;
+    }
+
     int Fill(v4l2_buffer& buffer) {
         if (failure != 0) return failure;
         if (script.empty() || queued_.empty()) return EAGAIN;
@@ -229,6 +247,7 @@ class FakeV4l2Kernel final : public drivers::V4l2Kernel {
         buffer.timestamp = {frame.stamp.count() / 1'000'000, frame.stamp.count() % 1'000'000};
         buffer.bytesused = static_cast<std::uint32_t>(frame.bytes.size());
         std::ranges::copy(frame.bytes, memory_.at(buffer.index).begin());
+        if (filled_index) buffer.index = *filled_index;
         script.pop_front();
         queued_.pop_front();
         return 0;

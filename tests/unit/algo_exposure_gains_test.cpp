@@ -4,6 +4,7 @@
 #include "algo/unified_vertex_motion.hpp"
 #include "tests/support/nv12_picture.hpp"
 #include "tests/support/sine_texture.hpp"
+#include "tests/support/small_ring.hpp"
 
 namespace hitchview::algo {
 namespace {
@@ -74,6 +75,37 @@ TEST_F(ExposureGainsTest, WithoutASharedPictureTheGainsStayAndResetMakesThemOne)
     EXPECT_EQ(Ratio(gains), before);
     gains.Reset();
     EXPECT_EQ(Ratio(gains), 1);
+}
+
+TEST(ExposureGainsRingTest, APlaceThatALensPutsBeyondAllPixelsIsNotRead) {
+    const Projection canvas = Projection::Cylinder(1024, 512, 0.5);
+    auto cameras = tests::LevelCameras(3, 0.3, 0);
+    for (CameraGeometry& camera : cameras) {
+        // At its edge it tells of pixels beyond the range of int.
+        camera.model.kind = CameraModel::Kind::kPinholeRadtan;
+        camera.model.fx_px = camera.model.fy_px = 1000;
+        camera.model.distortion = {0, 0, 0, 0, 0.05};
+        camera.model.max_theta_rad = 1.57;
+    }
+    PerUnit<std::optional<UnitGeometry>> rig;
+    rig[Unit::kTractor] = UnitGeometry::Ring(canvas, cameras, {});
+    ComposedMap map(canvas, rig, {});
+    SerialRunner runner;
+    map.Build({}, runner);
+    float furthest = 0;
+    for (int row = 0; row <= map.block_rows(); ++row) {
+        for (int col = 0; col <= map.block_cols(); ++col)
+            if (map.corner(0, row, col).sees)
+                furthest = std::max(furthest, std::abs(map.corner(0, row, col).x));
+    }
+    ASSERT_GT(furthest, 4e9F);
+    const Nv12Picture picture(cv::Mat1b(200, 320, std::uint8_t{100}));
+    RigFrames frames;
+    frames[Unit::kTractor].fill(picture.frame());
+    ExposureGains gains;
+    for (int i = 0; i < 20; ++i) gains.Update(map, frames);
+    const CameraGains found = gains.gains();
+    for (const float gain : found[Unit::kTractor]) EXPECT_NEAR(gain, 1, 0.01);
 }
 
 }  // namespace

@@ -129,6 +129,7 @@ TEST_F(OfflineUnifiedVertexMotionTest, TheSecondPassCanBeStartedAgain) {
     sut.Learn({}, runner);
     sut.Learn({}, runner);
     sut.Solve();
+    EXPECT_FALSE(sut.LightenNextStep()) << "it has all the time there is";
     for (int pass = 0; pass < 2; ++pass) {
         EXPECT_NE(sut.Step({}, runner), nullptr);
         EXPECT_NE(sut.Step({}, runner), nullptr);

@@ -59,13 +59,26 @@ const CameraSight* Find(const UnitGeometry::Sights& sights, int camera) {
     return nullptr;
 }
 
+constexpr double kExact_px = 0.1;
+
+/// Of a picture that is seen, above or below: on which side of it decides who is shown.
+bool LiesOnAnEdge(const UnitGeometry& geometry, const UnitGeometry::Sights& sights) {
+    for (const CameraSight& sight : sights) {
+        const double y = sight.pixel.y();
+        if (std::min(std::abs(y), std::abs(y - geometry.camera_height_px(sight.camera) + 1)) <
+            kExact_px)
+            return true;
+    }
+    return false;
+}
+
 /// Compares table and lens models at random pixels, in runs of up to the greatest length; returns
 /// how many sights were compared.
 int Compare(const UnitGeometry& geometry, const CameraMask& present) {
     const SightTable table(geometry);
     std::mt19937 random(1);
     std::uniform_real_distribution<double> x(-1500, 2500);  // whole turns off, too
-    std::uniform_real_distribution<double> y(-20, 199);
+    std::uniform_real_distribution<double> y(-170, 349);  // 29 degrees beyond the view
     int compared = 0;
     UnitGeometry::Sights exact;
     for (std::size_t run = 0; run < 100; ++run) {
@@ -80,9 +93,10 @@ int Compare(const UnitGeometry& geometry, const CameraMask& present) {
                 const CameraSight* other = Find(exact, sight.camera);
                 EXPECT_NE(other, nullptr) << pixel.transpose();
                 if (other == nullptr) continue;
-                EXPECT_LT((sight.pixel - other->pixel).norm(), 0.1) << pixel.transpose();
-                EXPECT_NEAR(sight.weight, other->weight, 0.02) << pixel.transpose();
+                EXPECT_LT((sight.pixel - other->pixel).norm(), kExact_px) << pixel.transpose();
                 ++compared;
+                if (LiesOnAnEdge(geometry, exact)) continue;
+                EXPECT_NEAR(sight.weight, other->weight, 0.02) << pixel.transpose();
             }
             for (const CameraSight& sight : exact) {
                 if (sight.weight < 0.01) continue;

@@ -95,6 +95,21 @@ TEST(UnitGeometryTest, ASightLineIsTheOneOfTheLensWithTheLargestShare) {
     EXPECT_FALSE(geometry.SightAlong({-1, 0, 0})) << "nothing looks back";
 }
 
+TEST(UnitGeometryTest, ThePictureOfAPlaneIsItsView) {
+    const UnitGeometry geometry = UnitGeometry::Plane(320, 200);
+    for (const Vector2d& pixel : {Vector2d{0, 0}, Vector2d{12.25, 190}, Vector2d{-40, 500}}) {
+        const Vector3d ray = geometry.view().Ray(pixel);
+        Vector2d projected;
+        ASSERT_TRUE(geometry.Project(0, ray, projected));
+        EXPECT_TRUE(projected.isApprox(pixel) || (projected - pixel).norm() < 1e-9);
+        UnitGeometry::Sights sights;
+        geometry.See(ray, sights);
+        ASSERT_EQ(sights.size(), 1U);
+        EXPECT_EQ(sights[0].pixel, projected);
+        EXPECT_EQ(geometry.ViewRay(0, pixel)->hnormalized(), projected);
+    }
+}
+
 TEST(UnitGeometryTest, SharesChangeWithoutJumpsAlongTheHorizon) {
     const UnitGeometry geometry = ThreeCameras();
     constexpr double kStep_px = 0.05;

@@ -223,9 +223,28 @@ TEST(CameraWatchTest, ALossThatTheDeviceHasToldIsNotToldTwice) {
     EXPECT_TRUE(rig.Told().empty());
 }
 
+TEST(CameraWatchTest, ADeviceThatIsHadAgainAndGivesNothingGoodIsToldToBeLostAgain) {
+    Watched rig({}, Watched::kFormat, kCameras, CameraWatch::LivePatience(kPeriod));
+    const auto without = [](std::uint32_t gone) {
+        return [gone](FrameSet& set) {
+            set.leases[algo::Unit::kTractor][1].Release();
+            set.cameras_missing = 1U << kFaulty;
+            set.cameras_gone = gone;
+        };
+    };
+    for (int i = 0; i < 30; ++i) rig.Next(without(1U << kFaulty));
+    rig.Next();  // the device has given a frame, and its capture thread told that it is back
+    for (int i = 0; i < 40; ++i) rig.Next(without(0));
+    EXPECT_TRUE(rig.Told().empty()) << "good frames may follow";
+    for (int i = 0; i < 60; ++i) rig.Next(without(0));
+    EXPECT_EQ(rig.Told(), std::vector{EventCode::kCameraLost});
+    rig.After(30);
+    EXPECT_EQ(rig.Told(), std::vector{EventCode::kCameraBack});
+}
+
 TEST(CameraWatchTest, OfLiveCamerasALossIsLeftToTheDeviceToTellFirst) {
     const std::vector<CameraFault> faults{{FaultKind::kSilent, 10, 40}, {FaultKind::kSilent, 100, 200}};
-    Watched rig(faults, Watched::kFormat, kCameras, CameraWatch::kLivePatience);
+    Watched rig(faults, Watched::kFormat, kCameras, CameraWatch::LivePatience(kPeriod));
     rig.After(30);
     EXPECT_EQ(rig.After(1), CameraState::kLost);
     rig.After(60);

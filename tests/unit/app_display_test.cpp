@@ -109,8 +109,31 @@ TEST(PictureAgeTest, ASenderThatBeginsAnewHasAYoungPicture) {
     EXPECT_EQ(*age.At(milliseconds(1040)), milliseconds(40));
     age.Note(milliseconds(50), milliseconds(1100));  // its clock was set back: it was restarted
     EXPECT_EQ(*age.At(milliseconds(1100)), milliseconds(0));
-    age.Note(milliseconds(60), milliseconds(9000));  // long after
-    EXPECT_EQ(*age.At(milliseconds(9000)), milliseconds(0));
+}
+
+TEST(PictureAgeTest, APictureThatWasHeldBackForLongIsOld) {
+    PictureAge age;
+    age.Note(milliseconds(500), milliseconds(1000));
+    age.Note(milliseconds(533), milliseconds(4533));  // its sender had stopped
+    EXPECT_GT(*age.At(milliseconds(4533)), std::chrono::seconds(3));
+    for (int i = 0; i < 60; ++i) {
+        const milliseconds now(4566 + 33 * i);
+        age.Note(now - milliseconds(500), now);
+        ASSERT_LE(*age.At(now), milliseconds(1));
+    }
+}
+
+TEST(PictureAgeTest, APauseAfterWhichEveryPictureSeemsOldWasARestart) {
+    PictureAge age;
+    age.Note(milliseconds(50), milliseconds(1000));
+    for (int i = 0; i < 60; ++i) {
+        const milliseconds now(9000 + 33 * i);  // its clock has been set back meanwhile
+        age.Note(milliseconds(60 + 33 * i), now);
+        if (33 * i < 1000)
+            ASSERT_GT(*age.At(now), std::chrono::seconds(6));
+        else
+            ASSERT_EQ(*age.At(now), milliseconds(0));
+    }
 }
 
 TEST(PictureAgeTest, ClocksThatDriftByAHundredPpmDoNotMakePicturesOld) {

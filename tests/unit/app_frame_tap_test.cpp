@@ -101,6 +101,28 @@ TEST_F(FrameTapTest, ClosingLetsAWaitingCameraGo) {
     EXPECT_EQ(tap_.counts().dropped, 1U);
 }
 
+TEST_F(FrameTapTest, AReaderThatGivesNothingBackGetsNoMoreAndTheCameraGoesOn) {
+    constexpr std::uint32_t kMost = 64;
+    hal::FramePool large(kFormat, kMost);
+    std::vector<hal::FrameLease> held;
+    tap_.Open(FrameTap::WhenFull::kDrop, 1, bell_);
+    for (std::uint32_t i = 0; i < kMost; ++i) {
+        tap_.Offer(large.Lease(*large.Take(), {.sequence = i}));
+        held.push_back(std::move(*tap_.Take()));
+    }
+    EXPECT_EQ(tap_.counts().dropped, 0U);
+    {
+        const hal::FrameLease more = Frame(kMost);
+        EXPECT_EQ(more.view().header.sequence, kMost);
+        EXPECT_FALSE(tap_.Take());
+        EXPECT_EQ(tap_.counts().dropped, 1U);
+    }
+    EXPECT_EQ(pool_.free_count(), kSlots);
+    held.clear();
+    Frame(kMost + 1);
+    EXPECT_TRUE(tap_.Take());
+}
+
 TEST_F(FrameTapTest, NoMemoryIsTaken) {
     if (!tests::kHeapCallsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
     tap_.Open(FrameTap::WhenFull::kDrop, 1, bell_);
@@ -126,6 +148,9 @@ TEST(TappedCameraTest, ItAnswersAsItsCameraDoes) {
     }
     EXPECT_EQ(camera.WaitFrame(std::chrono::milliseconds(1)).error(), hal::Error::kDisconnected);
     EXPECT_EQ(camera.Reopen().error(), hal::Error::kUnsupported);
+    EXPECT_EQ(camera.loss(), hal::CameraLoss::kDisconnected);
+    EXPECT_EQ(camera.counts().delivered, 0U);
+    EXPECT_EQ(camera.pool().slots, 0);
     EXPECT_TRUE(camera.tap().Take());
 }
 

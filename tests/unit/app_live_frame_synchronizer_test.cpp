@@ -21,6 +21,13 @@ class TickingCamera final : public hal::Camera {
         : clock_(clock), next_(clock.Now() + phase), pool_({16, 16}, 8) {}
 
     void Plug(bool in) { plugged_ = in; }
+    /// From now on its stamps stand still.
+    void StopStamps() { stamps_stand_ = true; }
+    /// Unplugged, for this reason.
+    void Lose(hal::CameraLoss loss) {
+        loss_ = loss;
+        plugged_ = false;
+    }
     /// Can be had again, and gives nothing, until it is plugged in.
     void Mute() {
         mute_ = true;
@@ -32,7 +39,8 @@ class TickingCamera final : public hal::Camera {
     hal::Result<hal::FrameLease> DoWaitFrame(milliseconds /*timeout*/) override {
         clock_.SleepUntil(next_);
         if (!plugged_) return hal::Error::kDisconnected;
-        const hal::FrameHeader header{sequence_++, next_};
+        if (!stamps_stand_) stamp_ = next_;
+        const hal::FrameHeader header{sequence_++, stamp_};
         next_ = std::max(next_ + kPeriod, clock_.Now() - kPeriod);
         const auto slot = pool_.Take();
         if (!slot) return hal::Error::kTimeout;
@@ -45,7 +53,7 @@ class TickingCamera final : public hal::Camera {
         ++reopened_;
         return hal::Done{};
     }
-    [[nodiscard]] hal::CameraLoss DoLoss() const override { return hal::CameraLoss::kSilent; }
+    [[nodiscard]] hal::CameraLoss DoLoss() const override { return loss_; }
     [[nodiscard]] hal::CameraCounts DoCounts() const override {
         return {.delivered = delivered_, .reopened = reopened_};
     }
@@ -55,8 +63,11 @@ class TickingCamera final : public hal::Camera {
     hal::FramePool pool_;
     std::atomic<bool> plugged_{true};
     std::atomic<bool> mute_{false};
+    std::atomic<hal::CameraLoss> loss_{hal::CameraLoss::kSilent};
     std::atomic<std::uint64_t> delivered_{0};
     std::atomic<std::uint64_t> reopened_{0};
+    std::atomic<bool> stamps_stand_{false};
+    Instant stamp_{};
     std::uint32_t sequence_ = 0;
 };
 
@@ -140,6 +151,21 @@ TEST_F(LiveFrameSynchronizerTest, ACameraThatGoesIsToldOfOnceAndOnceThatItIsBack
     EXPECT_FALSE(events_.Take());
 }
 
+TEST_F(LiveFrameSynchronizerTest, ACameraOfAnotherFormatDoesNotMatchTheCalibration) {
+    EXPECT_GE(TakeUntilMissing(0), 0);
+    cameras_[3].Lose(hal::CameraLoss::kOtherFormat);
+    EXPECT_GE(TakeUntilMissing(0b1000), 0);
+    const auto lost = events_.Take();
+    ASSERT_TRUE(lost);
+    EXPECT_EQ(lost->code, hal::EventCode::kCameraLost);
+    EXPECT_EQ(lost->text.view(), "lost: another format");
+    sets_->Finish();
+    const auto mismatch = events_.Take();
+    ASSERT_TRUE(mismatch);
+    EXPECT_EQ(mismatch->code, hal::EventCode::kCalibrationMismatch);
+    EXPECT_EQ(mismatch->subject.view(), "camera3");
+}
+
 TEST_F(LiveFrameSynchronizerTest, ACameraThatCanBeHadAndGivesNothingIsNotBack) {
     EXPECT_GE(TakeUntilMissing(0), 0);
     cameras_[2].Mute();
@@ -160,6 +186,22 @@ TEST_F(LiveFrameSynchronizerTest, WithoutAnyCameraSetsGoOnEmpty) {
     EXPECT_GE(sets_->counts().empty, 2U);
     cameras_[0].Plug(true);
     EXPECT_GE(TakeUntilMissing(0b1110), 0);
+}
+
+TEST_F(LiveFrameSynchronizerTest, WhereAllStampsStandStillSetsGoOnEmpty) {
+    for (TickingCamera& camera : cameras_) camera.StopStamps();
+    ASSERT_GE(TakeUntilMissing(0b1111), 0);
+    EXPECT_EQ(TakeUntilMissing(0b1111), 0) << "and the next one is as well";
+}
+
+TEST_F(LiveFrameSynchronizerTest, WhereNothingCameNothingWasSkipped) {
+    sets_->StartCounting();
+    for (int i = 0; i < 10; ++i) (void)sets_->WaitSet();
+    for (TickingCamera& camera : cameras_) camera.Plug(false);
+    ASSERT_GE(TakeUntilMissing(0b1111), 0);
+    for (TickingCamera& camera : cameras_) camera.Plug(true);
+    ASSERT_GE(TakeUntilMissing(0), 0);
+    EXPECT_LE(sets_->counts().skipped, 1U) << "a set may be cut short by the unplugging";
 }
 
 TEST_F(LiveFrameSynchronizerTest, EveryFrameIsAccountedFor) {

@@ -117,5 +117,22 @@ TEST_F(WatchedPublisherTest, APipelineThatMakesNothingFeedsNobody) {
     EXPECT_EQ(watchdog_.feeds, 1);
 }
 
+TEST(PanoramaPublisherTest, APanoramaThatNoQualityMakesSmallEnoughIsCountedAndFeedsNobody) {
+    hal::FakePublisher network;
+    hal::FakeClock clock;
+    FakeWatchdog watchdog;
+    const auto noise = tests::I420Picture::Noise(2048, 360, 255, 1);
+    PanoramaPublisherOptions options;
+    options.jpeg.budget_bytes = 15'000;
+    options.drop_when_late = false;
+    PanoramaPublisher publisher(network, clock, {.watchdog = &watchdog}, noise.format(), options);
+    for (int i = 0; i < 3; ++i)
+        publisher.Append({.picture = noise.view(), .captured_until = {}, .status = {}});
+    publisher.Finish();
+    EXPECT_EQ(publisher.refused(), 3U);
+    EXPECT_TRUE(network.images.empty());
+    EXPECT_EQ(watchdog.feeds, 0);
+}
+
 }  // namespace
 }  // namespace hitchview::app

@@ -37,13 +37,14 @@ algo::CameraFrame FrameOf(const std::vector<std::uint8_t>& luma) {
 class PictureSignsTest : public testing::Test {
  protected:
     /// What one camera shows after so many sets in which its detail, squared grey levels, is this
-    /// share of what the others have.
-    bool IsDirtyAfter(int sets, double share) {
+    /// share of what the others have, whose contrast this is.
+    bool IsDirtyAfter(int sets, double share, double contrast = 1) {
         std::array<CameraSigns, kMaxCameras> found{};
         for (int set = 0; set < sets; ++set) {
             const int mean = 120 + set % 2;  // no picture repeats the one before
-            const std::vector<std::uint8_t> usual = PictureOf(1, mean);
-            const std::vector<std::uint8_t> dirty = PictureOf(std::sqrt(share), mean);
+            const std::vector<std::uint8_t> usual = PictureOf(contrast, mean);
+            const std::vector<std::uint8_t> dirty =
+                PictureOf(contrast * std::sqrt(share), mean);
             found = {};
             signs_.Begin();
             for (std::size_t i = 0; i < kCameras; ++i)
@@ -64,6 +65,12 @@ TEST_F(PictureSignsTest, DetailIsLostBelowOneShareAndFoundAboveAnother) {
     EXPECT_TRUE(IsDirtyAfter(kUntilForgotten, 0.16)) << "the scene makes it come and go";
     EXPECT_FALSE(IsDirtyAfter(2, 0.25));
     EXPECT_FALSE(IsDirtyAfter(kUntilForgotten, 0.16));
+}
+
+TEST_F(PictureSignsTest, WhatWasRichForAWhileIsNotDirtyWhenItIsAsTheOthers) {
+    constexpr double kSoft = 0.5;
+    EXPECT_FALSE(IsDirtyAfter(5 * kUntilForgotten, 25, kSoft));
+    EXPECT_FALSE(IsDirtyAfter(5 * kUntilForgotten, 1, kSoft));
 }
 
 }  // namespace

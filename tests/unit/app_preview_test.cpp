@@ -48,6 +48,11 @@ class TwoTone {
                 bytes_[pixel] = luma;
                 bytes_[area + static_cast<std::size_t>(y / 2 * width + x)] = chroma;
                 break;
+            case PixelFormat::kI420:
+                bytes_[pixel] = luma;
+                bytes_[area + static_cast<std::size_t>(y / 2 * width / 2 + x / 2) +
+                       (x % 2 == 0 ? 0 : area / 4)] = chroma;
+                break;
             default:
                 bytes_[pixel] = luma;
         }
@@ -69,7 +74,8 @@ std::array<int, 4> ColoursOf(const hal::FrameFormat& format) {
 
 TEST(PreviewReductionTest, EveryFormatKeepsItsColours) {
     const std::array<int, 4> expected{100, 180, 90, 200};
-    for (const PixelFormat format : {PixelFormat::kUyvy, PixelFormat::kYuyv, PixelFormat::kNv12})
+    for (const PixelFormat format :
+         {PixelFormat::kUyvy, PixelFormat::kYuyv, PixelFormat::kNv12, PixelFormat::kI420})
         EXPECT_EQ(ColoursOf({1280, 720, format, Range::kFull}), expected);
     EXPECT_EQ(ColoursOf({1280, 720, PixelFormat::kGrey, Range::kFull}),
               (std::array<int, 4>{100, 180, 128, 128}));

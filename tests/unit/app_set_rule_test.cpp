@@ -250,6 +250,22 @@ TEST(SetRuleTest, FreeRunningCamerasAtAnyPhaseAllGetIntoEverySet) {
     EXPECT_GE(std::ranges::count(sets, 8U, &MadeSet::count), 290);
 }
 
+TEST(SetRuleTest, ACameraThatKeepsOffTheTriggerIsMissingAndNotTheOthers) {
+    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+        std::vector<CameraModel> cameras = Triggered(8);
+        const auto off = Instant(
+            static_cast<Instant::rep>(share * static_cast<double>(kPeriod.count())));
+        cameras[2].phase += off;
+        std::mt19937 random(5);
+        const auto sets = Sets(cameras, std::chrono::seconds(5), milliseconds(2), random);
+        EXPECT_GE(sets.size(), 140U) << share;
+        for (std::size_t i = 3; i < sets.size(); ++i) {
+            EXPECT_EQ(sets[i].count(), 7U) << share << ' ' << i;
+            EXPECT_FALSE(sets[i].frames[2]) << share << ' ' << i;
+        }
+    }
+}
+
 TEST(SetRuleTest, NoFramesNoSet) {
     SetRule rule(kPeriod, kPeriod);
     const auto verdict = rule.Judge({}, milliseconds(5));

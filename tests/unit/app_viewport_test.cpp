@@ -124,6 +124,22 @@ class Network final : public hal::Publisher {
     }
 };
 
+TEST(ViewportTest, AViewportThatNoQualityMakesSmallEnoughIsCountedAndThePanoramasGoOn) {
+    const drivers::SteadyClock clock;
+    Network network;
+    const I420Picture noise = I420Picture::Noise(720, 96, 255, 5);
+    PanoramaPublisherOptions options;
+    options.drop_when_late = false;
+    options.side.viewports = {{"VIEW_REAR", 100, 16, 120, 64, 1, 100}};
+    PanoramaPublisher publisher(network, clock, {}, noise.format(), options);
+    for (int i = 0; i < 3; ++i)
+        publisher.Append({.picture = noise.view(), .captured_until = {}, .status = {}});
+    publisher.Finish();
+    EXPECT_EQ(network.panoramas, 3);
+    EXPECT_TRUE(network.viewports.empty());
+    EXPECT_EQ(publisher.refused(), 3U);
+}
+
 TEST(ViewportTest, WhatIsSentLooksLikeItsPartOfThePanorama) {
     const drivers::SteadyClock clock;
     Network network;

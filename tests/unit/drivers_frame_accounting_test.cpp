@@ -59,6 +59,17 @@ TEST_F(FrameAccountingTest, OfADeviceThatDoesNotNumberTheStampsTell) {
     EXPECT_EQ(accounting_.counts().lost, 0U);
 }
 
+TEST_F(FrameAccountingTest, ANumberThatADeviceStaysAtIsGivenOutAgain) {
+    EXPECT_EQ(Accept(7, 0), 0);
+    EXPECT_EQ(Accept(8, 40), 1);
+    for (int stamp_ms = 80; stamp_ms < 400; stamp_ms += 40) EXPECT_EQ(Accept(8, stamp_ms), 1);
+    EXPECT_EQ(Accept(9, 400), 2);
+    EXPECT_EQ(accounting_.counts().lost + accounting_.counts().lost_unnumbered, 0U);
+    accounting_.Restart();
+    EXPECT_EQ(Accept(0, 1000), 3);
+    EXPECT_EQ(Accept(0, 1040), 4) << "it does not number its frames now";
+}
+
 TEST_F(FrameAccountingTest, ADamagedFrameIsCountedAndLeavesNoLoss) {
     Accept(0, 0);
     EXPECT_EQ(Accept(1, 40, true), -1);

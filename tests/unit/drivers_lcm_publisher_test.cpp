@@ -410,6 +410,7 @@ TEST(LcmPublisherOptionsTest, AMistakeIsNamed) {
         const char* says;
     } cases[] = {
         {{.url = "udpm://1.2.3.4:5"}, "address is '1.2.3.4'"},
+        {{.url = "file:///no/such/folder/drive.lcm?mode=w"}, "LCM cannot use 'file:///no/such"},
         {{.messages = {.panorama_channel = ".*"}}, "panorama_channel is '.*'"},
         {{.messages = {.status_channel = ""}}, "status_channel is ''"},
         {{.messages = {.hitch_angle_channel = "A B"}}, "hitch_angle_channel is 'A B'"},

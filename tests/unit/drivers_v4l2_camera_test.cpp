@@ -35,7 +35,9 @@ class V4l2CameraTest : public testing::Test {
     void Script(std::uint32_t first, int frames, const Bytes& bytes = Bytes(64 * 48, 9)) {
         for (int i = 0; i < frames; ++i) {
             const std::uint32_t sequence = first + static_cast<std::uint32_t>(i);
-            kernel_.script.push_back({sequence, microseconds(10'000 * sequence), bytes, flags_});
+            // Not even the first one has the stamp 0, which is none.
+            const auto stamp = std::max(microseconds(1), microseconds(10'000 * sequence));
+            kernel_.script.push_back({sequence, stamp, bytes, flags_});
         }
     }
 
@@ -238,6 +240,17 @@ TEST_F(V4l2CameraTest, WithoutAMonotonicStampTheTimeOfDequeueingCounts) {
     const auto frame = camera.WaitFrame(milliseconds(100));
     ASSERT_TRUE(frame.ok());
     EXPECT_GE(frame.value().view().header.captured_at, before - milliseconds(10));
+}
+
+TEST_F(V4l2CameraTest, WithoutAnyStampTheTimeOfDequeueingCounts) {
+    V4l2Camera& camera = Open();
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        kernel_.script.push_back({i, {}, Bytes(64 * 48, 9), flags_});
+        const hal::Instant before = std::chrono::steady_clock::now().time_since_epoch();
+        const auto frame = camera.WaitFrame(milliseconds(100));
+        ASSERT_TRUE(frame.ok());
+        EXPECT_GE(frame.value().view().header.captured_at, before - milliseconds(10));
+    }
 }
 
 TEST_F(V4l2CameraTest, AStampAheadOfTheClockIsReplacedByTheMomentOfDequeueing) {

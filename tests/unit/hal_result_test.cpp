@@ -35,17 +35,5 @@ TEST(ResultDeathTest, ReadingTheWrongSideStopsTheProcess) {
     EXPECT_DEATH((void)value.error(), "expectation failed");
 }
 
-TEST(ResultTest, EveryErrorHasItsOwnName) {
-    const Error all[] = {Error::kTimeout,   Error::kEndOfStream, Error::kDisconnected,
-                         Error::kCorrupted, Error::kUnsupported, Error::kNotFound,
-                         Error::kTooLarge,  Error::kFailed};
-    for (const Error a : all) {
-        EXPECT_STRNE(ToString(a), "unknown");
-        for (const Error b : all) {
-            EXPECT_EQ(a == b, std::string(ToString(a)) == ToString(b));
-        }
-    }
-}
-
 }  // namespace
 }  // namespace hitchview::hal
