@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
+#include <unistd.h>
 
 #include <ctime>
 #include <thread>
@@ -221,6 +222,18 @@ TEST_F(SocketCanBusTest, FramesWithoutRoomAreCountedAlsoThoseAfterTheLastThatCam
     EXPECT_GT(counts.delivered, 0U);
     EXPECT_GT(counts.dropped, 1000U);
     EXPECT_EQ(counts.delivered + counts.dropped, kSent);
+}
+
+TEST_F(SocketCanBusTest, AUserWhoMayNotHaveTheBufferThatIsAskedForIsToldHow) {
+    EXPECT_EQ(bus_->remark(), "") << "root may";
+    constexpr uid_t kNobody = 65534;
+    ASSERT_EQ(seteuid(kNobody), 0);
+    bus_ = MustOpen({.interface = "vcan0", .receive_buffer_bytes = 64 << 20});
+    ASSERT_EQ(seteuid(0), 0);
+    EXPECT_THAT(bus_->remark(), HasSubstr("bytes instead of 67108864"));
+    EXPECT_THAT(bus_->remark(), HasSubstr("sysctl -w net.core.rmem_max=67108864"));
+    ASSERT_TRUE(sender_->Send(Frame(1)));
+    EXPECT_TRUE(Wait(kSoon)) << "it is used all the same";
 }
 
 TEST_F(SocketCanBusTest, AMillionFramesAtFullRateComeInOrderOrAreCountedAsDropped) {

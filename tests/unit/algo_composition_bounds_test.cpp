@@ -51,6 +51,16 @@ TEST_F(CompositionBoundsTest, EachOffsetCountsAgainstItsOwnBound) {
     EXPECT_NEAR(Shares().Largest(), 2, 1e-5);
 }
 
+TEST_F(CompositionBoundsTest, OfTwoSharesTheLargerIsKeptForEachOffset) {
+    OffsetShares most{.stabilization = 1, .placement = 2, .view_offset = 3};
+    most.TakeLarger({.stabilization = 4, .placement = 1, .discrepancy = 5, .detail = 6});
+    EXPECT_EQ(most.stabilization, 4);
+    EXPECT_EQ(most.placement, 2);
+    EXPECT_EQ(most.view_offset, 3);
+    EXPECT_EQ(most.discrepancy, 5);
+    EXPECT_EQ(most.detail, 6);
+}
+
 TEST_F(CompositionBoundsTest, WhatIsNotFiniteExceedsEveryBound) {
     composition_.discrepancy(1, 3) = std::numeric_limits<float>::quiet_NaN();
     EXPECT_TRUE(std::isinf(Shares().discrepancy));

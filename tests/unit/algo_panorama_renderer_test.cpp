@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
+#include "algo/multiband_blend.hpp"
 #include "algo/panorama_renderer.hpp"
 #include "algo/unified_vertex_motion.hpp"
 #include "tests/support/nv12_picture.hpp"
@@ -434,6 +435,39 @@ TEST_P(MissingCameraTest, WhatTheOthersSeeIsDrawnWithoutATraceOfThePattern) {
         }
     }
     EXPECT_GT(drawn, canvas_.width_px * canvas_.height_px / 3);
+}
+
+TEST_P(MissingCameraTest, BesideThePatternBandsBlendBetweenTheCamerasColours) {
+    constexpr int kDarkest = 100;
+    constexpr int kBrightest = 150;
+    SerialRunner serial;
+    std::vector<Nv12Picture> greys;
+    for (int grey = kDarkest; grey <= kBrightest; grey += 10)
+        greys.emplace_back(cv::Mat1b(200, 320, static_cast<std::uint8_t>(grey)));
+    for (std::size_t i = 0; i < 3; ++i) {
+        frames_[Unit::kTractor][i] = greys[i].frame();
+        frames_[Unit::kTrailer][i] = greys[5 - i].frame();
+    }
+    frames_[Unit::kTractor][1] = {};
+    ComposedMap map(canvas_, rig_, {});
+    map.Build(composition_, serial);
+    CameraGains gains;
+    for (const Unit unit : kUnits) gains[unit].fill(1);
+    MultibandBlend bands(map);
+    bands.Update(map, {frames_, gains}, serial);
+    PanoramaPicture blended({canvas_.width_px, canvas_.height_px});
+    PanoramaRenderer().RenderBlended(map, frames_, bands, blended.planes(), serial);
+    int mixed = 0;
+    for (int y = 0; y < canvas_.height_px; ++y) {
+        for (int x = 0; x < canvas_.width_px; ++x) {
+            const int luma = blended.y()(y, x);
+            ASSERT_TRUE((luma >= kDarkest - 1 && luma <= kBrightest + 1) || luma == 0 ||
+                        luma == Hatched(x, y))
+                << luma << " at " << x << ' ' << y;
+            mixed += luma >= kDarkest && luma % 10 != 0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(mixed, 1000);
 }
 
 INSTANTIATE_TEST_SUITE_P(Corners8And16PxApart, MissingCameraTest, testing::Values(768, 2304));
