@@ -168,6 +168,15 @@ TEST_P(LookaheadTest, ARunEndsAfterTheFramesAskedFor) {
     for (std::size_t i = 0; i < kept.size(); ++i) EXPECT_EQ(kept[i].sequence, i);
 }
 
+TEST_P(LookaheadTest, ARunEndsAfterTheTimeAskedFor) {
+    RunOptions options;
+    options.lookahead_frames = GetParam();
+    for (const int duration_ms : {200, 233}) {
+        options.duration = std::chrono::milliseconds(duration_ms);
+        EXPECT_EQ(RunAndKeep(Rig(), options).size(), duration_ms == 200 ? 6U : 7U) << duration_ms;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Frames, LookaheadTest, testing::Values(0, 3, 10));
 
 TEST_F(SimulatedRunTest, WithEverythingOffBothUnitsStayWhereTheyAre) {
