@@ -180,7 +180,8 @@ void SightTable::FindCameras(const Places& places, int count, SightRuns& sights)
     first.fill(count);
     for (int i = 0; i < count; ++i) {
         const auto place = static_cast<std::size_t>(i);
-        for (unsigned rest = seeing_[Band(places.row[place], places.col[place])]; rest != 0; rest &= rest - 1) {
+        const std::size_t band = Band(places.row[place], places.col[place]);
+        for (unsigned rest = seeing_[band]; rest != 0; rest &= rest - 1) {
             const auto camera = static_cast<std::size_t>(std::countr_zero(rest));
             first[camera] = std::min(first[camera], i);
             end[camera] = i + 1;

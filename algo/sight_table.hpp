@@ -44,9 +44,9 @@ struct SightRuns {
 };
 
 /// UnitGeometry::See for pixels of the unit's view, from a table: exact at the nodes of a grid over
-/// the view and, above and below, what tilts bring into it; bilinear between them; beyond, and next to the edge of
-/// what a lens sees, nothing is seen. Hundreds of times cheaper than lens models. Memory is taken
-/// at construction; thread-safe afterwards.
+/// the view and, above and below, what tilts bring into it; bilinear between them; beyond, and next
+/// to the edge of what a lens sees, nothing. Hundreds of times cheaper than lens models. Memory is
+/// taken at construction; thread-safe afterwards.
 class SightTable {
  public:
     explicit SightTable(const UnitGeometry& geometry);

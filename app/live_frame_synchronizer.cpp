@@ -102,7 +102,8 @@ void LiveFrameSynchronizer::Number(const FrameInbox::Visit& visit, FrameSet& set
     const double periods =
         static_cast<double>((moment - set_due_).count()) / static_cast<double>(period_.count());
     const auto steps = static_cast<std::uint32_t>(std::max(1L, 1 + std::lround(periods)));
-    const bool frames_came = visit.Unused() > std::exchange(unused_, visit.Unused());
+    const std::uint64_t unused = visit.Unused();
+    const bool frames_came = unused > std::exchange(unused_, unused);
     if (!first) {
         sequence_ += steps;
         if (frames_came) counts_.skipped += steps - 1;

@@ -52,20 +52,15 @@ Gap WidestGap(const Moments& moments) {
     return widest;
 }
 
-struct Window {
-    hal::Instant begin{};
-    hal::Instant end{};
-};
-
-/// The one of this length with the most moments in it; of several the newest.
-Window FullestWindow(const Moments& moments, hal::Instant length) {
-    Window fullest;
+/// Where the window of this length with the most moments in it begins; of several the newest.
+hal::Instant FullestWindow(const Moments& moments, hal::Instant length) {
+    hal::Instant fullest{};
     std::ptrdiff_t most = 0;
     for (const hal::Instant begin : moments.all()) {
         const auto within = std::ranges::count_if(
             moments.all(), [&](hal::Instant at) { return at >= begin && at <= begin + length; });
-        if (within >= most) fullest = {begin, begin + length};
-        most = std::max<std::ptrdiff_t>(most, within);
+        if (within >= most) fullest = begin;
+        most = std::max(most, within);
     }
     return fullest;
 }
@@ -123,11 +118,11 @@ SetRule::Grouping SetRule::Group(const PendingFrames& pending) const {
 }
 
 SetRule::Verdict SetRule::MakeSet(const PendingFrames& pending, const CameraMask& group) {
-    const Window together = FullestWindow(Sorted(pending, group), tolerance_);
-    const CameraMask too_early = Before(pending, together.begin) & group;
+    const hal::Instant begin = FullestWindow(Sorted(pending, group), tolerance_);
+    const hal::Instant end = begin + tolerance_ + hal::Instant(1);
     Verdict verdict;
-    verdict.taken = Before(pending, together.end + hal::Instant(1)) & group & ~too_early;
-    verdict.set_aside = too_early;
+    verdict.set_aside = Before(pending, begin) & group;
+    verdict.taken = Before(pending, end) & group & ~verdict.set_aside;
     open_since_.reset();
     sets_without_regrouping_ = std::max(0, sets_without_regrouping_ - 1);
     return verdict;

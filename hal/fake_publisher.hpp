@@ -9,7 +9,8 @@
 
 namespace hitchview::hal {
 
-/// Keeps a copy of what it was given, or counts it. Read the members when the publishing thread is at rest.
+/// Keeps a copy of what it was given, or counts it. Read the members when the publishing thread is
+/// at rest.
 class FakePublisher final : public Publisher {
  public:
     struct Image {
