@@ -116,21 +116,23 @@ void SightTable::Fill(const UnitGeometry& geometry) {
 }
 
 void SightTable::NoteSeeing(const std::vector<Node>& whole, std::uint8_t camera_bit) {
-    const auto sees = [&](int row, int col) {
-        return !whole[static_cast<std::size_t>(row * kCols + col % kCols)].hasNaN();
-    };
     for (int row = 0; row + 1 < rows_; ++row) {
         for (int col = 0; col < kCols; ++col) {
-            if (sees(row, col) && sees(row, col + 1) && sees(row + 1, col) &&
-                sees(row + 1, col + 1))
+            if (Sees(whole, row, col) && Sees(whole, row, col + 1) && Sees(whole, row + 1, col) &&
+                Sees(whole, row + 1, col + 1))
                 seeing_[Band(row, col)] |= camera_bit;
         }
     }
 }
 
+/// Columns beyond the last are those from the first on: it is a ring.
+bool SightTable::Sees(const std::vector<Node>& whole, int row, int col) {
+    return !whole[static_cast<std::size_t>(row * kCols + col % kCols)].hasNaN();
+}
+
 bool SightTable::SeesColumn(const std::vector<Node>& whole, int col) const {
     for (int row = 0; row < rows_; ++row) {
-        if (!whole[static_cast<std::size_t>(row * kCols + col)].hasNaN()) return true;
+        if (Sees(whole, row, col)) return true;
     }
     return false;
 }
@@ -140,7 +142,7 @@ void SightTable::Crop(const std::vector<Node>& whole, Camera& camera) const {
     int longest = 0;
     int run = 0;
     for (int i = 0; i < 2 * kCols; ++i) {
-        run = SeesColumn(whole, i % kCols) ? 0 : std::min(run + 1, kCols);
+        run = SeesColumn(whole, i) ? 0 : std::min(run + 1, kCols);
         if (run <= longest) continue;
         longest = run;
         camera.first = (i + 1) % kCols;

@@ -83,6 +83,7 @@ class SightTable {
         return static_cast<std::size_t>(row / kBandRows * kCols + col);
     }
     void Crop(const std::vector<Node>& whole, Camera& camera) const;
+    [[nodiscard]] static bool Sees(const std::vector<Node>& whole, int row, int col);
     [[nodiscard]] bool SeesColumn(const std::vector<Node>& whole, int col) const;
     void Place(const PixelRun& view, Places& places) const;
     void FindCameras(const Places& places, int count, SightRuns& sights) const;
