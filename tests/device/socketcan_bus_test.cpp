@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
+#include <linux/can/raw.h>
 #include <unistd.h>
 
 #include <ctime>
 #include <thread>
 
 #include "tests/support/heap_calls.hpp"
+#include "tests/support/refused_call.hpp"
 #include "tests/support/virtual_can.hpp"
 
 namespace hitchview::drivers {
@@ -348,6 +350,30 @@ TEST_F(SocketCanBusTest, AMistakenNameIsToldTheInterfacesThatThereAre) {
     const auto loopback = SocketCanBus::Open({.interface = "lo"});
     ASSERT_FALSE(loopback);
     EXPECT_THAT(loopback.error(), HasSubstr("'lo' is not a CAN interface"));
+}
+
+TEST_F(SocketCanBusTest, WhatTheKernelRefusesIsSaidWithTheRemedy) {
+    const struct {
+        tests::RefusedCall call;
+        const char* says;
+        const char* remedy;
+    } cases[] = {
+        {{__NR_socket, 0, AF_CAN, EAFNOSUPPORT}, "vcan0: socket: Address family", "modprobe can_raw"},
+        {{__NR_socket, 2, CAN_RAW, EPROTONOSUPPORT}, "vcan0: socket: Protocol", "RestrictAddress"},
+        {{__NR_socket, 0, AF_CAN, EPERM}, "vcan0: socket: Operation not", "CAP_NET_RAW"},
+        {{__NR_setsockopt, 2, CAN_RAW_FD_FRAMES, ENOPROTOOPT}, "vcan0: CAN_RAW_FD_FRAMES: ", ""},
+        {{__NR_setsockopt, 2, SO_RXQ_OVFL, EINVAL}, "vcan0: SO_RXQ_OVFL: Invalid", ""},
+        {{__NR_bind, 2, sizeof(sockaddr_can), EACCES}, "vcan0: bind: Permission", "CAP_NET_RAW"},
+    };
+    for (const auto& c : cases) {
+        const bool tried = tests::WhileRefused(c.call, [&] {
+            const auto bus = SocketCanBus::Open({.interface = "vcan0"});
+            ASSERT_FALSE(bus) << c.says;
+            EXPECT_THAT(bus.error(), HasSubstr(c.says));
+            EXPECT_THAT(bus.error(), HasSubstr(c.remedy));
+        });
+        EXPECT_TRUE(tried) << "no filters of system calls in this kernel";
+    }
 }
 
 TEST_F(SocketCanBusTest, ASilentBusTimesOutAndIsConnected) {

@@ -11,6 +11,7 @@
 #include "drivers/lcm_publisher.hpp"
 #include "drivers/steady_clock.hpp"
 #include "tests/support/i420_picture.hpp"
+#include "tests/support/refused_call.hpp"
 
 // Runs in a network namespace of its own (tests/support/lcm_namespace.sh).
 namespace hitchview {
@@ -87,6 +88,18 @@ TEST_F(LcmDeliveryTest, NinetyPanoramasAtThirtyHertzAllArrive) {
     const auto [line, exit_code] = receiver.Finish();
     EXPECT_EQ(line, "received 90 missing 0 undecodable 0\n");
     EXPECT_EQ(exit_code, 0);
+}
+
+TEST_F(LcmDeliveryTest, ANetworkThatTakesNothingIsToldAtTheStart) {
+    // As a packet filter refuses, or a service's own IPAddressDeny=.
+    const tests::RefusedCall send{__NR_sendmsg, 2, 0, EPERM};
+    const bool tried = tests::WhileRefused(send, [&] {
+        const auto publisher = drivers::LcmPublisher::Create({}, clock_);
+        ASSERT_FALSE(publisher);
+        EXPECT_EQ(publisher.error(),
+                  std::string("LCM cannot send to '") + drivers::kDefaultLcmUrl + "'");
+    });
+    if (!tried) GTEST_SKIP() << "no filters of system calls in this kernel";
 }
 
 /// A JPEG of any length: a real one, and bytes after its end, which a decoder does not read.

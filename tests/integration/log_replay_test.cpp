@@ -252,7 +252,8 @@ TEST_F(LogReplayTest, ACameraThatBecomesAnotherOneEndsTheReplay) {
     const auto summary = RunRig(Loaded(log).value(), {}, kGoOn);
     EXPECT_THAT(testing::internal::GetCapturedStderr(),
                 HasSubstr("camera front: the pictures of channel CAM_FRONT change"));
-    EXPECT_FALSE(summary.ok());
+    ASSERT_FALSE(summary.ok());
+    EXPECT_EQ(summary.error(), "a camera gives no more frames: failed");
 }
 
 TEST_F(LogReplayTest, ARecordingThatChangesItsCalibrationEnds) {

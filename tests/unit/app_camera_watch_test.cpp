@@ -25,27 +25,28 @@ class Watched {
  public:
     explicit Watched(const std::vector<CameraFault>& faults,
                      const hal::FrameFormat& format = kFormat, std::size_t cameras = kCameras,
-                     Instant patience = {}) {
+                     Instant patience = {}, Instant period = kPeriod)
+        : period_(period) {
         std::vector<WatchedPicture> pictures;
         for (std::size_t i = 0; i < cameras; ++i) {
             const auto unit = i < 2 ? algo::Unit::kTractor : algo::Unit::kTrailer;
             std::unique_ptr<hal::Camera> camera = std::make_unique<tests::PatternCamera>(
-                static_cast<std::uint32_t>(i), format, kPeriod);
+                static_cast<std::uint32_t>(i), format, period);
             if (i == kFaulty) {
                 camera = std::make_unique<FaultyCamera>(std::move(camera), faults,
-                                                        FaultyCamera::Pace{nullptr, kPeriod}, 4);
+                                                        FaultyCamera::Pace{nullptr, period}, 4);
             }
             pictures.push_back({"camera" + std::to_string(i), unit, cameras_[unit].size()});
             cameras_[unit].push_back(std::move(camera));
         }
         sets_.emplace(cameras_);
-        watch_.emplace(pictures, kPeriod, events_, clock_, patience);
+        watch_.emplace(pictures, period, events_, clock_, patience);
     }
 
     /// The next set, looked at. `change` befalls it before.
     template <typename Change>
     FrameSet Next(const Change& change) {
-        clock_.Advance(kPeriod);
+        clock_.Advance(period_);
         auto set = sets_->WaitSet();
         EXPECT_TRUE(set);
         change(*set);
@@ -73,6 +74,7 @@ class Watched {
     static constexpr hal::FrameFormat kFormat{160, 120, hal::PixelFormat::kNv12};
 
  private:
+    Instant period_;
     hal::FakeClock clock_;
     EventQueue events_;
     Cameras cameras_;
@@ -253,6 +255,24 @@ TEST(CameraWatchTest, OfLiveCamerasALossIsLeftToTheDeviceToTellFirst) {
     EXPECT_EQ(rig.Told(), std::vector{EventCode::kCameraLost});
     rig.After(30);
     EXPECT_EQ(rig.Told(), std::vector{EventCode::kCameraBack});
+}
+
+TEST(CameraWatchTest, AtAnyRateALossIsLeftToTheDeviceForThePeriodsThatItTakes) {
+    for (const int rate_hz : {5, 10, 15, 30, 60}) {
+        const Instant period = std::chrono::nanoseconds(std::chrono::seconds(1)) / rate_hz;
+        Watched rig({}, Watched::kFormat, kCameras, CameraWatch::LivePatience(period), period);
+        const auto silent = [](std::uint32_t gone) {
+            return [gone](FrameSet& set) {
+                set.leases[algo::Unit::kTractor][1].Release();
+                set.cameras_missing = 1U << kFaulty;
+                set.cameras_gone = gone;
+            };
+        };
+        constexpr int kToldByTheDevice = 30;  // sets
+        for (int i = 0; i < kToldByTheDevice; ++i) rig.Next(silent(0));
+        for (int i = 0; i < 30; ++i) rig.Next(silent(1U << kFaulty));
+        EXPECT_TRUE(rig.Told().empty()) << rate_hz << " Hz: told by the device already";
+    }
 }
 
 }  // namespace

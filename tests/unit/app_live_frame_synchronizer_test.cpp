@@ -2,9 +2,13 @@
 
 #include <atomic>
 #include <bit>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
 
 #include "app/live_frame_synchronizer.hpp"
 #include "drivers/steady_clock.hpp"
+#include "hal/fake_clock.hpp"
 
 namespace hitchview::app {
 namespace {
@@ -228,6 +232,63 @@ TEST_F(LiveFrameSynchronizerTest, SetsAreCountedAndNumberedFromWhenTheProgramIsR
     const SetCounts& counts = sets_->counts();
     EXPECT_EQ(counts.complete + counts.partial, 1U);
     EXPECT_EQ(counts.skipped, 0U);
+}
+
+/// Gives the frames that it is handed.
+class HandedCamera final : public hal::Camera {
+ public:
+    void Hand(std::uint32_t sequence, Instant captured_at) {
+        const std::lock_guard lock(mutex_);
+        handed_.push_back({.sequence = sequence, .captured_at = captured_at});
+        handed_one_.notify_one();
+    }
+
+ private:
+    [[nodiscard]] const hal::FrameFormat& DoFormat() const override { return pool_.format(); }
+    hal::Result<hal::FrameLease> DoWaitFrame(milliseconds timeout) override {
+        std::unique_lock lock(mutex_);
+        if (!handed_one_.wait_for(lock, timeout, [this] { return !handed_.empty(); }))
+            return hal::Error::kTimeout;
+        const hal::FrameHeader header = handed_.front();
+        handed_.pop_front();
+        return pool_.Lease(pool_.Take().value(), header);
+    }
+
+    std::mutex mutex_;
+    std::condition_variable handed_one_;
+    std::deque<hal::FrameHeader> handed_;
+    hal::FramePool pool_{{16, 16}, 8};
+};
+
+TEST(FreeCamerasTest, OneThatLosesAFrameDoesNotMakeItLookLikeALostSet) {
+    constexpr std::array kPhases{milliseconds(0), milliseconds(2), milliseconds(4),
+                                 milliseconds(7)};
+    constexpr std::uint32_t kSets = 60;
+    for (std::size_t losing = 0; losing < kPhases.size(); ++losing) {
+        hal::FakeClock clock;
+        EventQueue events;
+        std::array<HandedCamera, kPhases.size()> cameras;
+        std::vector<LiveCamera> live;
+        for (std::size_t i = 0; i < cameras.size(); ++i)
+            live.push_back({&cameras[i], std::to_string(i), algo::Unit::kTractor, i});
+        LiveFrameSynchronizer sets(live, events, clock, kPeriod, kPeriod);
+        sets.StartCounting();
+        for (std::uint32_t i = 0; i < kSets; ++i) {
+            const bool lost = i % 15 == 14;
+            for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
+                if (lost && camera == losing) continue;
+                cameras[camera].Hand(i, (i + 1) * kPeriod + kPhases.at(camera));
+            }
+            // The frames that show that one is lost.
+            if (lost) continue;
+            const std::uint32_t expected = i > 0 && i % 15 == 0 ? 2 : 1;
+            for (std::uint32_t k = 0; k < expected; ++k) {
+                const auto set = sets.WaitSet();
+                EXPECT_EQ(set.value().sequence, i + 1 - expected + k) << "camera " << losing;
+            }
+        }
+        EXPECT_EQ(sets.counts().skipped, 0U) << "camera " << losing;
+    }
 }
 
 }  // namespace
