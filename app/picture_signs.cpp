@@ -76,20 +76,29 @@ bool PictureSigns::Repeats(Camera& camera, const algo::CameraFrame& picture) {
     return repeats;
 }
 
-/// Of the cameras that can be compared; at least one can.
+std::size_t PictureSigns::Compared() const {
+    return static_cast<std::size_t>(std::ranges::count(cameras_, true, &Camera::compared));
+}
+
+/// To compare with them alone. Where most cameras lack detail, the scene does.
+bool PictureSigns::EnoughAreClean() const {
+    const auto clean = static_cast<std::size_t>(std::ranges::count_if(
+        cameras_, [](const Camera& camera) { return camera.compared && !camera.dirty; }));
+    return clean >= kLeastCameras && 2 * clean >= Compared();
+}
+
+/// Of the cameras that can be compared; at least one can. A dirty one would make another's dirt
+/// look usual.
 template <typename Value>
 float PictureSigns::Median(const Value& value_of) const {
+    const bool clean_alone = EnoughAreClean();
     std::array<float, kMaxCameras> values{};
     std::size_t count = 0;
     for (const Camera& camera : cameras_)
-        if (camera.compared) values[count++] = value_of(camera);
+        if (camera.compared && !(clean_alone && camera.dirty)) values[count++] = value_of(camera);
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
     std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
     return *middle;
-}
-
-std::size_t PictureSigns::Compared() const {
-    return static_cast<std::size_t>(std::ranges::count(cameras_, true, &Camera::compared));
 }
 
 /// `usual`: what the cameras have in that part. Expected is that, or what this one usually makes of
@@ -158,7 +167,9 @@ void PictureSigns::FindDirty(std::array<CameraSigns, kMaxCameras>& signs) {
     for (std::size_t i = 0; i < usual.size(); ++i)
         usual[i] = Median([i](const Camera& camera) { return camera.recent[i]; });
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
-        if (cameras_[i].compared) signs[i][CameraState::kDirty] = IsDirty(cameras_[i], usual);
+        if (!cameras_[i].compared) continue;
+        cameras_[i].dirty = IsDirty(cameras_[i], usual);
+        signs[i][CameraState::kDirty] = cameras_[i].dirty;
     }
 }
 

@@ -50,6 +50,7 @@ class PictureSigns {
     struct Camera {
         bool present = false;   ///< in this set
         bool compared = false;  ///< with the others: it shows something new
+        bool dirty = false;     ///< as judged last
         algo::PictureLook look;
         std::uint64_t print_before = 0;
         std::optional<std::uint64_t> whole_print_before;  ///< where the samples were equal, too
@@ -63,6 +64,7 @@ class PictureSigns {
     static bool Repeats(Camera& camera, const algo::CameraFrame& picture);
     static bool IsDirty(Camera& camera, const Cells& usual);
     [[nodiscard]] std::size_t Compared() const;
+    [[nodiscard]] bool EnoughAreClean() const;
     template <typename Value>
     [[nodiscard]] float Median(const Value& value_of) const;
     void FindBlurred(std::array<CameraSigns, kMaxCameras>& signs);

@@ -13,8 +13,6 @@ using hal::CameraState;
 
 constexpr int kCols = 160;
 constexpr int kRows = 120;
-constexpr std::size_t kCameras = 4;
-constexpr std::size_t kDirty = 1;
 
 /// Noise round a grey level, always the same; `contrast`: of its grey levels.
 std::vector<std::uint8_t> PictureOf(double contrast, int mean) {
@@ -36,23 +34,28 @@ algo::CameraFrame FrameOf(const std::vector<std::uint8_t>& luma) {
 
 class PictureSignsTest : public testing::Test {
  protected:
-    /// What one camera shows after so many sets in which its detail, squared grey levels, is this
-    /// share of what the others have, whose contrast this is.
-    bool IsDirtyAfter(int sets, double share, double contrast = 1) {
-        std::array<CameraSigns, kMaxCameras> found{};
+    using Found = std::array<CameraSigns, kMaxCameras>;
+
+    /// What is found after so many sets in which the cameras' detail, squared grey levels, is these
+    /// shares of that of a picture of this contrast.
+    Found After(int sets, const std::vector<double>& shares, double contrast = 1) {
+        Found found{};
         for (int set = 0; set < sets; ++set) {
             const int mean = 120 + set % 2;  // no picture repeats the one before
-            const std::vector<std::uint8_t> usual = PictureOf(contrast, mean);
-            const std::vector<std::uint8_t> dirty =
-                PictureOf(contrast * std::sqrt(share), mean);
             found = {};
             signs_.Begin();
-            for (std::size_t i = 0; i < kCameras; ++i)
-                signs_.Add(i, FrameOf(i == kDirty ? dirty : usual));
+            for (std::size_t i = 0; i < shares.size(); ++i)
+                signs_.Add(i, FrameOf(PictureOf(contrast * std::sqrt(shares[i]), mean)));
             signs_.Finish(found);
         }
+        return found;
+    }
+
+    /// Of one camera whose detail is this share of what three others have.
+    bool IsDirtyAfter(int sets, double share, double contrast = 1) {
+        const Found found = After(sets, {1, share, 1, 1}, contrast);
         EXPECT_FALSE(found[0][CameraState::kDirty]);
-        return found[kDirty][CameraState::kDirty];
+        return found[1][CameraState::kDirty];
     }
 
     static constexpr int kUntilForgotten = 60;  // sets, then nothing of the past is left
@@ -71,6 +74,28 @@ TEST_F(PictureSignsTest, WhatWasRichForAWhileIsNotDirtyWhenItIsAsTheOthers) {
     constexpr double kSoft = 0.5;
     EXPECT_FALSE(IsDirtyAfter(5 * kUntilForgotten, 25, kSoft));
     EXPECT_FALSE(IsDirtyAfter(5 * kUntilForgotten, 1, kSoft));
+}
+
+TEST_F(PictureSignsTest, ADirtyCameraDoesNotHideTheDirtOfAnother) {
+    const double soft = 0.5;
+    const double dirty = 0.11;  // too much to be blurred
+    After(kUntilForgotten, {1, 1, soft, 1, 1});
+    Found found = After(kUntilForgotten, {dirty, 1, soft, 1, 1});
+    EXPECT_TRUE(found[0][CameraState::kDirty]);
+    found = After(kUntilForgotten, {dirty, dirty, soft, 1, 1});
+    EXPECT_TRUE(found[1][CameraState::kDirty]) << "of all five, the soft one is the middle";
+    EXPECT_FALSE(found[2][CameraState::kDirty]);
+    found = After(kUntilForgotten, {1, 1, soft, 1, 1});
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_FALSE(found[i][CameraState::kDirty]) << i;
+}
+
+TEST_F(PictureSignsTest, WhatMostCamerasLackIsTheScenes) {
+    const double plain = 0.11;  // too much to be blurred
+    After(kUntilForgotten, {1, 1, 1, 1, 1, 1, 1});
+    Found found = After(kUntilForgotten, {plain, plain, 1, 1, 1, 1, 1});
+    EXPECT_TRUE(found[0][CameraState::kDirty]);
+    found = After(kUntilForgotten, {plain, plain, plain, plain, 1, 1, 1});
+    for (std::size_t i = 0; i < 7; ++i) EXPECT_FALSE(found[i][CameraState::kDirty]) << i;
 }
 
 }  // namespace
